@@ -1,0 +1,32 @@
+# The two commands: `make train` and `make test`. They need Python >= 3.11, make and pip, nothing else.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
+
+.PHONY: train test soak lint clean
+
+train: $(VENV)/train
+	$(BIN)/python -m agents.train
+
+test: lint
+	$(BIN)/python -m pytest
+
+# The same tests with full counts: hours, not minutes.
+soak: $(VENV)/dev
+	BOUNCE_SOAK=1 $(BIN)/python -m pytest -s
+
+lint: $(VENV)/dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+$(VENV)/train $(VENV)/dev: pyproject.toml constraints.txt
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo "Installing bounce_env[$(@F)] into $(VENV): some minutes the first time ..."
+	$(INSTALL) ".[$(@F)]"
+	@touch $@
+
+clean:
+	rm -rf $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis

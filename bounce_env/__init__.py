@@ -1,0 +1,43 @@
+"""Gymnasium environments on an exact bounce engine.
+
+`import bounce_env` registers `Bounce/*`. What compiles (numba), draws (pygame) or validates (pydantic) is imported only
+when it is used.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from bounce_env.registration import register_all
+
+if TYPE_CHECKING:
+    from bounce_env.engine.world import World
+    from bounce_env.scene import Ball, Bumper, Paddle, Scene, SceneError, Sensor, Wall, builtin_scenes, load_scene
+
+_SCENE = ("Ball", "Bumper", "Paddle", "Scene", "SceneError", "Sensor", "Wall", "builtin_scenes", "load_scene")
+_HOME = {"World": "bounce_env.engine.world", **dict.fromkeys(_SCENE, "bounce_env.scene")}
+
+__all__ = [
+    "Ball",
+    "Bumper",
+    "Paddle",
+    "Scene",
+    "SceneError",
+    "Sensor",
+    "Wall",
+    "World",
+    "builtin_scenes",
+    "load_scene",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
+register_all()

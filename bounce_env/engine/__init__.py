@@ -1,0 +1,1 @@
+"""The exact bounce engine: knows numpy and numba, and nothing of Gymnasium."""

@@ -1,0 +1,181 @@
+"""Time of impact of a flying ball with a face and with a circle: one pure scalar function per shape.
+
+All coordinates are relative to the obstacle, in its frame: for a part that moves uniformly the caller subtracts the
+part's position and velocity, and the same functions serve. `reach` is the obstacle's radius plus the ball's [m];
+`slack` is the length [m] below which a gap is a touch. Each returns the duration [s] from now to the hit, or inf.
+"""
+
+import math
+
+from bounce_env.engine.flight import dot, moved, sped
+from bounce_env.engine.jit import Feature, function
+from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
+
+
+@function
+def falling_time(gap: float, behind: bool, rate: float, pull: Feature) -> float:
+    """First t >= 0 at which gap + rate t + pull t^2 / 2 falls through zero (a parabola falls through at most once).
+
+    `behind` says that the ball is on the far side already, where the gap must rise above zero before it can fall.
+    Written so that nothing cancels (Citardauq): each root is taken from the form that adds two terms of one sign.
+    """
+    if pull is None or pull == 0.0:
+        if behind or rate >= 0.0:
+            return math.inf
+        return max(gap, 0.0) / -rate
+    if rate < 0.0:
+        if behind:
+            return math.inf
+        gap = max(gap, 0.0)
+        square = rate * rate - 2.0 * pull * gap
+        if square <= 0.0:
+            return math.inf
+        return 2.0 * gap / (math.sqrt(square) - rate)
+    if pull > 0.0:
+        return math.inf
+    if not behind:
+        gap = max(gap, 0.0)
+    square = rate * rate - 2.0 * pull * gap
+    if square <= 0.0 and behind:
+        return math.inf
+    return (rate + math.sqrt(square)) / -pull
+
+
+@function
+def facing_time(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    gx: Feature,
+    gy: Feature,
+    ux: float,
+    uy: float,
+    length: float,
+    reach: float,
+    facing: float,
+    side: float,
+    slack: float,
+    horizon: float,
+) -> float:
+    """Hit of one face of a wall that starts at the origin and runs `length` along the unit vector (ux, uy).
+
+    `facing` 1.0 is the face on the left of that direction, -1.0 the one on the right. `side` is the side, 1 or -1, on
+    which a ball of no radius is while it touches the wall; 0 for a disc, whose centre keeps its distance.
+    """
+    nx, ny = -facing * uy, facing * ux
+    gap = x * nx + y * ny - reach
+    rate = vx * nx + vy * ny
+    behind = gap < -slack or (gap <= slack and side == -facing)
+    if not behind and gap <= slack and abs(rate) <= ULPS_OF_SPEED * (abs(vx) + abs(vy)):
+        rate = 0.0
+    t = falling_time(gap, behind, rate, dot(gx, gy, nx, ny))
+    if t > horizon:
+        return math.inf
+    along = moved(x, vx, gx, t) * ux + moved(y, vy, gy, t) * uy
+    # The slack closes the joint between two walls for a ball of no radius; for a disc the end's circle takes over.
+    if along < -slack or along > length + slack:
+        return math.inf
+    return t
+
+
+@function
+def face_time(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    gx: Feature,
+    gy: Feature,
+    ux: float,
+    uy: float,
+    length: float,
+    reach: float,
+    side: float,
+    slack: float,
+    horizon: float,
+) -> float:
+    """The earlier hit of the two faces of a wall; arguments as for `facing_time`."""
+    left = facing_time(x, y, vx, vy, gx, gy, ux, uy, length, reach, 1.0, side, slack, horizon)
+    right = facing_time(x, y, vx, vy, gx, gy, ux, uy, length, reach, -1.0, side, slack, horizon)
+    return min(left, right)
+
+
+@function
+def straight_circle_time(x: float, y: float, vx: float, vy: float, reach: float, slack: float) -> float:
+    """Hit of a circle about the origin on a straight flight: the smaller root in closed form, nothing cancels."""
+    distance = math.sqrt(x * x + y * y)
+    approach = -(x * vx + y * vy)
+    if approach <= ULPS_OF_SPEED * (abs(vx) + abs(vy)) * distance:
+        return math.inf
+    cross = x * vy - y * vx
+    square = (vx * vx + vy * vy) * reach * reach - cross * cross
+    if square <= 0.0:
+        return math.inf
+    return max(distance - reach, 0.0) * (distance + reach) / (approach + math.sqrt(square))
+
+
+@function
+def curved_circle_time(
+    x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, reach: float, slack: float, horizon: float
+) -> float:
+    """Hit of a circle about the origin under gravity, by bounded-acceleration advancement.
+
+    The gap f(t) to a convex obstacle satisfies f'' >= -|g|, so stepping to the first root of f + f' h - |g| h^2 / 2
+    cannot step over a hit, and converges quadratically. Just after a bounce f = 0 and f' > 0, and the same step leaves
+    the circle: no ball is pushed off, no circle is skipped.
+    """
+    bound = math.sqrt(gx * gx + gy * gy)
+    t = 0.0
+    for _ in range(SEARCH_STEPS):
+        px, py = moved(x, vx, gx, t), moved(y, vy, gy, t)
+        qx, qy = sped(vx, gx, t), sped(vy, gy, t)
+        distance = math.sqrt(px * px + py * py)
+        gap = distance - reach
+        rate = (px * qx + py * qy) / distance
+        if gap <= slack:
+            slow = ULPS_OF_SPEED * (abs(qx) + abs(qy))
+            if rate < -slow:
+                return max(t - gap / rate, 0.0)
+            rate = max(rate, 0.0)
+            gap = max(gap, 0.0)
+        root = math.sqrt(rate * rate + 2.0 * bound * gap)
+        t += 2.0 * gap / (root - rate) if rate < 0.0 else (rate + root) / bound
+        if t > horizon:
+            return math.inf
+    return t
+
+
+@function
+def circle_time(
+    x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, reach: float, slack: float, horizon: float
+) -> float:
+    """Hit of a circle about the origin, from outside."""
+    if gx is None:
+        return straight_circle_time(x, y, vx, vy, reach, slack)
+    if gx == 0.0 and gy == 0.0:
+        return straight_circle_time(x, y, vx, vy, reach, slack)
+    return curved_circle_time(x, y, vx, vy, gx, gy, reach, slack, horizon)
+
+
+@function
+def capsule_time(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    gx: Feature,
+    gy: Feature,
+    ux: float,
+    uy: float,
+    half_width: float,
+    reach: float,
+    slack: float,
+    horizon: float,
+) -> float:
+    """Hit of a capsule about the origin, whose core reaches `half_width` to both sides along the unit (ux, uy)."""
+    ax, ay = half_width * ux, half_width * uy
+    t = face_time(x + ax, y + ay, vx, vy, gx, gy, ux, uy, 2.0 * half_width, reach, 0, slack, horizon)
+    t = min(t, circle_time(x + ax, y + ay, vx, vy, gx, gy, reach, slack, min(t, horizon)))
+    t = min(t, circle_time(x - ax, y - ay, vx, vy, gx, gy, reach, slack, min(t, horizon)))
+    return t if t <= horizon else math.inf

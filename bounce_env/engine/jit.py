@@ -1,0 +1,126 @@
+"""The one place that decides how the engine is compiled.
+
+`function` is for everything that kernels call, `kernel` for the entry points called from Python. Both are plain
+`numba.njit` with one policy:
+
+* `error_model="numpy"`: a division by zero gives inf, it does not raise from inside a step;
+* `fastmath` stays off: it would let the compiler change results from machine to machine;
+* `nogil`, and never `parallel=True`: threads run kernels over slices of a batch (a forked child survives that).
+
+Only entry points are cached on disk; what they call is compiled into them. Numba checks a cached binary against the
+one file that defines the entry point, so a change in a helper would leave it stale. Here the check is a hash over all
+sources that can be compiled into a kernel.
+"""
+
+import functools
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from numba.core import caching, cgutils
+from numba.core import types as nb_types
+from numba.extending import intrinsic, overload
+
+Record = Any  # one record of a table or of the state, see `engine.layout`; compiled code changes it in place
+Table = Any  # an array, or None where no scene of the batch has what it holds
+Feature = Any  # a number, or None where no scene of the batch has the feature
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+POLICY: dict[str, Any] = {"error_model": "numpy", "nogil": True}
+INLINED = {**POLICY, "forceinline": True}
+COMPILED_PACKAGES = ("engine", "games")
+
+
+@functools.cache
+def sources_hash() -> str:
+    """SHA-256 over every source file that can end up in a kernel, by name and content."""
+    package = Path(__file__).resolve().parent.parent
+    digest = hashlib.sha256()
+    for folder in COMPILED_PACKAGES:
+        for path in sorted((package / folder).glob("*.py")):
+            digest.update(path.name.encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _stamped(locator: type) -> type:
+    return type(locator.__name__, (locator,), {"get_source_stamp": lambda self: sources_hash()})
+
+
+class _CacheImpl(caching.CompileResultCacheImpl):  # type: ignore[misc]
+    _locator_classes = tuple(_stamped(locator) for locator in caching.CacheImpl._locator_classes)
+
+
+class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
+    _impl_class = _CacheImpl
+
+
+def function(python_function: F) -> F:
+    """Compile a function that kernels call."""
+    compiled: F = numba.njit(**INLINED)(python_function)
+    return compiled
+
+
+def kernel(python_function: F) -> F:
+    """Compile an entry point and keep its binary on disk."""
+    compiled: Any = numba.njit(**POLICY)(python_function)
+    if not numba.config.DISABLE_JIT:
+        compiled._cache = _KernelCache(compiled.py_func)
+    return compiled
+
+
+def function_of_feature(absent: Callable[..., Any]) -> Callable[[F], F]:
+    """Compile the decorated function, or `absent` where its first argument is None: a feature that no scene has.
+
+    Inside one function a branch on None is left out as well, but both branches must give one type; this is for a result
+    that is itself None where the feature is not there.
+    """
+
+    def decorate(present: F) -> F:
+        def chosen(first: Any, *rest: Any) -> Callable[..., Any]:
+            return absent if first == nb_types.none else present
+
+        def interpreted(first: Any, *rest: Any) -> Any:
+            return absent(first, *rest) if first is None else present(first, *rest)
+
+        functools.update_wrapper(interpreted, present)
+        overload(interpreted, strict=False, jit_options=POLICY)(chosen)
+        return interpreted  # type: ignore[return-value]
+
+    return decorate
+
+
+def _borrowed(typing_context: Any, argument: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        array = context.make_array(signature.args[0])(context, builder, value=values[0])
+        array.meminfo = cgutils.get_null_value(array.meminfo.type)
+        array.parent = cgutils.get_null_value(array.parent.type)
+        return array._getvalue()
+
+    def pass_on(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return values[0]
+
+    return argument(argument), generate if isinstance(argument, nb_types.Array) else pass_on
+
+
+_borrow = intrinsic(_borrowed)
+
+
+def _borrow_interpreted(argument: Any) -> Any:
+    return argument
+
+
+@function
+def _borrow_compiled(argument: Any) -> Any:
+    return _borrow(argument)
+
+
+borrow = _borrow_interpreted if numba.config.DISABLE_JIT else _borrow_compiled
+"""An array (or None) that is not counted as a reference.
+
+Numba counts references at every call that an array is passed to, atomically; over a batch that costs more than the
+physics. A kernel borrows its arguments once: its caller holds them for as long as it runs.
+"""

@@ -1,0 +1,294 @@
+"""The event loop of one world: the earliest event of its balls and parts, one after the other, up to an instant.
+
+A step in which nothing happens costs one comparison per ball and part. At one instant balls come before parts, and each
+in its order.
+"""
+
+import math
+
+from bounce_env.engine.flight import moved, pull, sped, touch_tolerance
+from bounce_env.engine.instant import before, later, since
+from bounce_env.engine.jit import Feature, Record, Table, function
+from bounce_env.engine.layout import (
+    BUDGET,
+    CROSSING,
+    NEXT_HIT,
+    NEXT_SENSOR,
+    NEXT_ZONE,
+    OK,
+    OUT,
+    PART_STOPS,
+    State,
+    Tables,
+)
+from bounce_env.engine.resolve import arrive, bounce_from_all, count_hit, face_sensors, snap
+from bounce_env.engine.search import plan_flight, plan_parts, plan_sensor, rail_offset
+from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT
+
+# How a run of the loop ends.
+DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
+
+
+@function
+def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table) -> int:
+    """Process the events of world `w` up to and including an instant; DONE, OUT_OF_BUDGET or LEDGER_FULL.
+
+    Unless DONE, the world's time is that of its last event, and the next call goes on from there.
+    """
+    world = state.worlds[w]
+    events = 0
+    while True:
+        hi, lo, ball, paddle = _next(state, w, until_hi, until_lo)
+        if ball < 0 and paddle < 0:
+            world.time_hi, world.time_lo = until_hi, until_lo
+            return DONE
+        if events >= max_events:
+            _stop_for_budget(state, w)
+            return OUT_OF_BUDGET
+        if ledger is not None and world.rows + BOUNCES_AT_ONE_INSTANT > len(ledger):
+            return LEDGER_FULL
+        world.time_hi, world.time_lo = hi, lo
+        if ball >= 0:
+            events += _ball_event(state, tables, w, ball, ledger)
+        else:
+            _part_stops(state, tables, w, paddle, ledger)
+            events += 1
+
+
+@function
+def _next(state: State, w: int, until_hi: float, until_lo: float) -> tuple[float, float, int, int]:
+    hi, lo, ball, paddle = math.inf, 0.0, -1, -1
+    for k in range(state.balls.shape[1]):
+        b = state.balls[w, k]
+        if not before(until_hi, until_lo, b.next_hi, b.next_lo) and before(b.next_hi, b.next_lo, hi, lo):
+            hi, lo, ball = b.next_hi, b.next_lo, k
+    m, stop_hi, stop_lo = _first_stop(state.paddles, w)
+    if m >= 0 and not before(until_hi, until_lo, stop_hi, stop_lo) and before(stop_hi, stop_lo, hi, lo):
+        return stop_hi, stop_lo, -1, m
+    return hi, lo, ball, paddle
+
+
+@function
+def _first_stop(paddles: Table, w: int) -> tuple[int, float, float]:
+    hi, lo, first = math.inf, 0.0, -1
+    if paddles is None:
+        return first, hi, lo
+    for m in range(paddles.shape[1]):
+        if before(paddles[w, m].stop_hi, paddles[w, m].stop_lo, hi, lo):
+            hi, lo, first = paddles[w, m].stop_hi, paddles[w, m].stop_lo, m
+    return first, hi, lo
+
+
+@function
+def _stop_for_budget(state: State, w: int) -> None:
+    for k in range(state.balls.shape[1]):
+        if state.balls[w, k].status == OK:
+            state.balls[w, k].status = BUDGET
+
+
+@function
+def _ball_event(state: State, tables: Tables, w: int, k: int, ledger: Table) -> int:
+    """Process the ball's next event; returns how many events it counts for in the budget."""
+    ball = state.balls[w, k]
+    if ball.next_kind == NEXT_ZONE:
+        ball.zone_after, ball.in_zone = math.inf, 1
+        plan_parts(state, tables, w, k)
+        return 0
+    if ball.next_kind == NEXT_SENSOR:
+        _cross(state, tables, w, k, tables.sensors, state.sensor_sides, ledger)
+        return 1
+    _hit(state, tables, w, k, ledger)
+    return 1
+
+
+@function
+def _fly(ball: Record, gx: Feature, gy: Feature, t: float, hi: float, lo: float) -> None:
+    """Move the ball along its flight by `t` seconds and let that be where, at (hi, lo), a new one starts."""
+    ball.x, ball.y = moved(ball.x, ball.vx, gx, t), moved(ball.y, ball.vy, gy, t)
+    ball.vx, ball.vy = sped(ball.vx, gx, t), sped(ball.vy, gy, t)
+    ball.hi, ball.lo = hi, lo
+
+
+@function
+def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head = tables.scenes[scene]
+    gx, gy = pull(tables.gravity, scene)
+    # A kept hit is a duration from the flight's start, so that its own rounding is all there is.
+    t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
+    x0, y0 = ball.x, ball.y
+    ball.slack = touch_tolerance(head.extent, ball.vx, ball.vy, gx, gy, t)
+    _fly(ball, gx, gy, t, ball.next_hi, ball.next_lo)
+    travelled = abs(ball.x - x0) + abs(ball.y - y0)
+    snap(ball, tables, state.paddles, w, scene)
+    arrive(ball, tables.faces, head.faces, state.face_sides, w, k, scene, travelled)
+    bounce_from_all(state, tables, w, k, ledger)
+    face_sensors(ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene)
+    plan_flight(state, tables, w, k)
+
+
+@function
+def _cross(state: State, tables: Tables, w: int, k: int, sensors: Table, sides: Table, ledger: Table) -> None:
+    """Report a crossing. The flight goes on as if there were no sensor, unless it is a drain."""
+    if sensors is None:
+        return
+    ball, world = state.balls[w, k], state.worlds[w]
+    gx, gy = pull(tables.gravity, world.scene)
+    index, after = ball.sensor_index, ball.sensor_after
+    sensor = sensors[world.scene, index]
+    sides[w, k, index] = -sides[w, k, index]
+    count_hit(state, w, sensor.element)
+    if ledger is not None:
+        _log_crossing(ledger, world, ball, k, sensor, gx, gy, after)
+    if sensor.drain:
+        _fly(ball, gx, gy, after, ball.next_hi, ball.next_lo)
+        ball.status = OUT
+        ball.in_zone, ball.next_hi, ball.next_lo = 0, math.inf, 0.0
+    else:
+        plan_sensor(state, tables, w, k, after, index)
+
+
+@function
+def _log_crossing(
+    ledger: Table, world: Record, ball: Record, k: int, sensor: Record, gx: Feature, gy: Feature, after: float
+) -> None:
+    x, y = moved(ball.x, ball.vx, gx, after), moved(ball.y, ball.vy, gy, after)
+    vx, vy = sped(ball.vx, gx, after), sped(ball.vy, gy, after)
+    facing = 1.0 if vy * sensor.ux - vx * sensor.uy < 0.0 else -1.0
+    row = ledger[world.rows]
+    row.time, row.ball, row.element, row.kind = ball.next_hi, k, sensor.element, CROSSING
+    row.x, row.y, row.nx, row.ny = x, y, -facing * sensor.uy, facing * sensor.ux
+    row.vx0, row.vy0, row.vx1, row.vy1 = vx, vy, vx, vy
+    row.ux, row.uy = 0.0, 0.0
+    world.rows += 1
+
+
+@function
+def _part_stops(state: State, tables: Tables, w: int, m: int, ledger: Table) -> None:
+    _paddle_stops(state.paddles, tables.rails, state.worlds[w], w, m, ledger)
+    replan_parts(state, tables, w)
+
+
+@function
+def _paddle_stops(paddles: Table, rails: Table, world: Record, w: int, m: int, ledger: Table) -> None:
+    if paddles is None or rails is None:
+        return
+    paddle, rail = paddles[w, m], rails[world.scene, m]
+    velocity = paddle.velocity
+    paddle.offset = rail.span if velocity > 0.0 else 0.0
+    paddle.hi, paddle.lo = paddle.stop_hi, paddle.stop_lo
+    paddle.velocity = 0.0
+    paddle.stop_hi, paddle.stop_lo = math.inf, 0.0
+    if ledger is not None:
+        row = ledger[world.rows]
+        row.time, row.ball, row.element, row.kind = paddle.hi, -1, rail.element, PART_STOPS
+        row.x, row.y = rail.x + paddle.offset * rail.ux, rail.y + paddle.offset * rail.uy
+        row.nx, row.ny = 0.0, 0.0
+        row.vx0, row.vy0, row.vx1, row.vy1 = velocity * rail.ux, velocity * rail.uy, 0.0, 0.0
+        row.ux, row.uy = 0.0, 0.0
+        world.rows += 1
+
+
+@function
+def replan_parts(state: State, tables: Tables, w: int) -> None:
+    """Search the parts anew for every ball that they can reach: some part has changed its speed."""
+    for k in range(state.balls.shape[1]):
+        if state.balls[w, k].in_zone:
+            plan_parts(state, tables, w, k)
+
+
+@function
+def command(state: State, tables: Tables, paddles: Table, rails: Table, w: int, m: int, velocity: float) -> None:
+    """Let paddle `m` of world `w` move at `velocity` [m/s] from now on. The command it already has changes no bit."""
+    if paddles is None or rails is None:
+        return
+    paddle, world = paddles[w, m], state.worlds[w]
+    if velocity == paddle.command:
+        return
+    rail = rails[world.scene, m]
+    paddle.offset = min(max(rail_offset(paddle, world.time_hi, world.time_lo), 0.0), rail.span)
+    paddle.hi, paddle.lo = world.time_hi, world.time_lo
+    paddle.command = velocity
+    set_off(paddle, rail)
+    replan_parts(state, tables, w)
+
+
+@function
+def set_off(paddle: Record, rail: Record) -> None:
+    """Start the commanded motion from the paddle's place: against a stop it stands, else the stop ahead is an event."""
+    room = rail.span - paddle.offset if paddle.command > 0.0 else paddle.offset
+    paddle.velocity = paddle.command if room > 0.0 else 0.0
+    paddle.stop_hi, paddle.stop_lo = math.inf, 0.0
+    if paddle.velocity != 0.0:
+        paddle.stop_hi, paddle.stop_lo = later(paddle.hi, paddle.lo, room / abs(paddle.velocity))
+
+
+@function
+def place(state: State, tables: Tables, w: int, k: int, x: float, y: float, vx: float, vy: float) -> None:
+    """Put ball `k` into flight at (x, y) [m] with velocity (vx, vy) [m/s] at the world's present time."""
+    ball, world = state.balls[w, k], state.worlds[w]
+    head = tables.scenes[world.scene]
+    gx, gy = pull(tables.gravity, world.scene)
+    ball.x, ball.y, ball.vx, ball.vy = x, y, vx, vy
+    ball.hi, ball.lo = world.time_hi, world.time_lo
+    ball.status = OK
+    ball.slack = touch_tolerance(head.extent, 0.0, 0.0, gx, gy, 0.0)
+    _take_sides(ball, tables.faces, head.faces, state.face_sides, w, k, world.scene, gx, gy)
+    _take_sides(ball, tables.sensors, head.sensors, state.sensor_sides, w, k, world.scene, gx, gy)
+    plan_flight(state, tables, w, k)
+
+
+@function
+def _take_sides(
+    ball: Record, lines: Table, count: int, sides: Table, w: int, k: int, scene: int, gx: Feature, gy: Feature
+) -> None:
+    """Sides at the start: on a line itself, the one the ball moves to; at rest, the one gravity presses it from."""
+    if lines is None or sides is None:
+        return
+    for i in range(count):
+        line = lines[scene, i]
+        nx, ny = -line.uy, line.ux
+        lean = (ball.x - line.x) * nx + (ball.y - line.y) * ny
+        if abs(lean) <= ball.slack:
+            lean = ball.vx * nx + ball.vy * ny
+            if lean == 0.0 and gx is not None:
+                lean = -(gx * nx + gy * ny)
+        sides[w, k, i] = 1 if lean >= 0.0 else -1
+
+
+@function
+def restart(state: State, tables: Tables, w: int) -> None:
+    """Set world `w` back to time 0 with its parts at rest in the middle of their rails; balls are placed after this."""
+    world = state.worlds[w]
+    world.time_hi, world.time_lo = 0.0, 0.0
+    world.bounces, world.speed_capped, world.rows = 0, 0, 0
+    clear_hits(state, w)
+    _rest_paddles(state.paddles, tables.rails, w, world.scene, tables.scenes[world.scene].paddles)
+
+
+@function
+def _rest_paddles(paddles: Table, rails: Table, w: int, scene: int, count: int) -> None:
+    if paddles is None or rails is None:
+        return
+    for m in range(paddles.shape[1]):
+        paddle = paddles[w, m]
+        paddle.offset = 0.5 * rails[scene, m].span if m < count else 0.0
+        paddle.velocity, paddle.command, paddle.hi, paddle.lo = 0.0, 0.0, 0.0, 0.0
+        paddle.stop_hi, paddle.stop_lo = math.inf, 0.0
+
+
+@function
+def clear_hits(state: State, w: int) -> None:
+    """Forget which elements were struck in the last step; a step without hits pays a comparison."""
+    if state.worlds[w].dirty:
+        state.worlds[w].dirty = 0
+        for element in range(state.hits.shape[1]):
+            state.hits[w, element] = 0
+
+
+@function
+def resume(state: State, w: int) -> None:
+    """Let balls that the event budget stopped go on."""
+    for k in range(state.balls.shape[1]):
+        if state.balls[w, k].status == BUDGET:
+            state.balls[w, k].status = OK

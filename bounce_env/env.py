@@ -1,0 +1,197 @@
+"""The Gymnasium environments: each a batch of one world, with its card as docstring."""
+
+from os import PathLike
+from typing import Any, Literal
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from bounce_env.games.batch import Batch, Game
+from bounce_env.games.episode import DISABLED
+from bounce_env.games.paddle import PaddleGame, PaddleOptions
+from bounce_env.games.start import start_rows
+from bounce_env.render import Picture, Renderer, Window
+from bounce_env.scene import Scene
+
+Observation = npt.NDArray[np.float32]
+
+
+def observation_space(game: Game) -> spaces.Box:
+    """What an agent sees; the bounds come from the physics, nothing is clipped to them."""
+    return spaces.Box(-game.observation_high, game.observation_high, dtype=np.float32)
+
+
+def action_space(game: Game) -> spaces.Space[Any]:
+    """What an agent does."""
+    if game.discrete_actions is not None:
+        return spaces.Discrete(game.discrete_actions)
+    return spaces.Box(-1.0, 1.0, (1,), np.float32)
+
+
+def world_seed(generator: np.random.Generator) -> np.uint64:
+    """The seed of a world's stream of episodes, drawn from a Gymnasium generator."""
+    return np.uint64(generator.integers(2**64, dtype=np.uint64))
+
+
+def picture_of(batch: Batch, world: int) -> Picture:
+    """What a frame of a world shows."""
+    balls, paddles = batch.view(world)
+    elements = len(batch.game.scenes[0].elements)
+    return Picture(
+        balls=balls[:, :2],
+        paddles=paddles,
+        hits=batch.state.hits[world, :elements],
+        score=float(batch.episodes[world].score),
+    )
+
+
+class BounceEnv(gym.Env[Observation, Any]):
+    """A game as a Gymnasium environment; the games are its subclasses."""
+
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 30}  # noqa: RUF012 (Gymnasium's)
+
+    def __init__(self, game: Game, render_mode: str | None, width: int | None, height: int | None) -> None:
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            allowed = [None, *self.metadata["render_modes"]]
+            raise ValueError(f"render_mode = {render_mode!r}: must be one of {allowed}")
+        self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds)}
+        self.render_mode = render_mode
+        self.observation_space: spaces.Space[Any] = observation_space(game)
+        self.action_space = action_space(game)
+        self._batch = Batch(game, 1, autoreset=DISABLED)
+        self._size = (width, height)
+        self._renderer: Renderer | None = None
+        self._window: Window | None = None
+        self._seeded = False
+        self._running = False
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What draws is made anew when it is needed; windows can be neither copied nor sent.
+        return {**self.__dict__, "_renderer": None, "_window": None}
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Begin the next episode.
+
+        seed: begins the stream of episodes anew; without it the stream goes on. options: `position` (x, y) [m] and
+        `velocity` (vx, vy) [m/s] of the launch in place of the seed's; anything else is a ValueError.
+        """
+        start = start_rows(self._batch.game, 1, options)
+        super().reset(seed=seed)
+        if seed is not None or not self._seeded:
+            self._batch.seed(0, world_seed(self.np_random))
+            self._seeded = True
+        self._batch.reset(np.ones(1, np.bool_), start)
+        self._running = True
+        if self.render_mode == "human":
+            self.render()
+        return self._batch.results.observations[0].copy(), self._info()
+
+    def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """One step; see the card. Raises ResetNeeded when no episode is running, ValueError for a bad action."""
+        if not self._running:
+            raise gym.error.ResetNeeded("the episode has ended or not begun: call reset() before step()")
+        ended = self._batch.step(np.asarray(action))
+        info = self._info()
+        if ended:
+            self._running = False
+            info |= self._batch.end_info(0)
+        if self.render_mode == "human":
+            self.render()
+        r = self._batch.results
+        return r.observations[0].copy(), float(r.rewards[0]), bool(r.terminated[0]), bool(r.truncated[0]), info
+
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """The present frame (height, width, 3) in mode rgb_array; in mode human the same picture in a window."""
+        if self.render_mode is None:
+            gym.logger.warn('render() needs a render mode: gym.make(..., render_mode="rgb_array")')
+            return None
+        if self._renderer is None:
+            self._renderer = Renderer(self._batch.game.scenes[0], *self._size)
+        frame = self._renderer.frame(picture_of(self._batch, 0))
+        if self.render_mode == "rgb_array":
+            return frame
+        if self._window is None:
+            title = self.spec.id if self.spec else type(self).__name__
+            self._window = Window((frame.shape[1], frame.shape[0]), title, self.metadata["render_fps"])
+        self._window.show(frame)
+        return None
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+
+    def _info(self) -> dict[str, Any]:
+        return {"score": float(self._batch.episodes[0].score), "ball": 0}
+
+
+class PaddleEnv(BounceEnv):
+    """Keep the ball in play with a paddle, and send it into the bumpers.
+
+    A field of 1.0 x 1.4 m under a gravity of 1.5 m/s^2: walls to the sides and above, a drain below, four bumpers that
+    speed the ball up (b > 1, at most 3 m/s), and a paddle with round ends above the drain. The paddle's f < 1: its
+    motion drags the ball along, so that a player can aim. It kicks what comes faster than 0.05 m/s, so that no ball
+    dies on it. The physics has no time step: every bounce happens at its exact instant.
+
+    Actions, every `frame_skip` / 60 s:
+
+    | `action` | space | meaning |
+    | --- | --- | --- |
+    | "continuous" | Box(-1, 1, (1,), float32) | speed of the paddle, in units of 1.5 m/s; clipped, NaN is an error |
+    | "discrete" | Discrete(3) | 0 left, 1 stay, 2 right, at full speed |
+
+    Observation, float32, nothing clipped:
+
+    | index | what | range |
+    | --- | --- | --- |
+    | 0 | ball x: left wall -1, right wall 1 | [-1, 1] |
+    | 1 | ball y: drain -1, top 1 | [-1, 1] |
+    | 2, 3 | ball velocity x, y, in units of 2 m/s | +-sqrt(max_speed^2 + 2 g H) / 2, about 1.8 |
+    | 4 | paddle: left stop -1, right stop 1 | [-1, 1] |
+    | 5 | what the paddle does now, only where actions are sticky | [-1, 1] |
+
+    Reward: 1 for each hit of a bumper. Nothing for survival.
+
+    Start: the ball at 40 % of the field's height, x uniform over the middle 60 % of its width, 1.5 m/s at 30 to 150
+    degrees, all from the episode's seed; the paddle in the middle. Options of `reset`: `position`, `velocity`.
+
+    End: terminated when the ball drains; truncated after `time_limit` seconds of play (or, never seen in play, when
+    more than 500 events fall into one step: `end_reason` "budget").
+
+    Info: each step `score` (the sum of rewards) and `ball` (0). At an episode's end also `end_reason`,
+    `points_bumpers`, `bounces`, `touches` (hits of the paddle), `speed_capped` (bounces at the speed limit) and
+    `game_seconds`.
+
+    Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; "paddle"), `action`
+    ("continuous"), `frame_skip` (2, in units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit`
+    (60.0 s, None for none), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a frame in pixels). A
+    vector env also takes `num_envs`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
+
+    Versions: v0, first release.
+    """
+
+    def __init__(
+        self,
+        *,
+        scene: str | PathLike[str] | Scene = "paddle",
+        action: Literal["continuous", "discrete"] = "continuous",
+        frame_skip: int = 2,
+        repeat_action_probability: float = 0.0,
+        time_limit: float | None = 60.0,
+        render_mode: str | None = None,
+        width: int | None = None,
+        height: int | None = None,
+    ) -> None:
+        options = PaddleOptions(
+            scene=scene,
+            action=action,
+            frame_skip=frame_skip,
+            repeat_action_probability=repeat_action_probability,
+            time_limit=time_limit,
+        )
+        super().__init__(PaddleGame(options), render_mode, width, height)

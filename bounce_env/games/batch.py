@@ -1,0 +1,128 @@
+"""A batch of worlds that play one game: the one thing that the single env, the vector env and SB3's share."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.engine.layout import Array, State, Tables, new_state
+from bounce_env.engine.view import view
+from bounce_env.games.episode import END_REASONS, EPISODE, FPS, Results, new_results
+from bounce_env.scene import Scene
+
+Mask = npt.NDArray[np.bool_]
+
+
+class Game(Protocol):
+    """What a batch needs of a game."""
+
+    reset_worlds: ClassVar[Callable[..., None]]
+    step_worlds: ClassVar[Callable[..., int]]
+
+    scenes: tuple[Scene, ...]
+    tables: Tables
+    rules: Any
+    step_seconds: float
+    field: tuple[float, float, float, float]  # x_min, y_min, x_max, y_max [m]: where a ball may be launched
+    discrete_actions: int | None
+    observation_high: npt.NDArray[np.float32]  # bounds of what is observed; the lower ones are their negatives
+
+    @staticmethod
+    def speeds(actions: Array) -> Array: ...
+
+
+class Batch:
+    """`worlds` worlds of one game, stepped by `num_threads` threads.
+
+    state, episodes, results: what the kernels work on, rows by world; `results` is overwritten by each call. The result
+    does not depend on the number of threads: no world reads what another writes.
+    """
+
+    def __init__(self, game: Game, worlds: int, *, autoreset: int, num_threads: int = 1) -> None:
+        self.game = game
+        self.worlds = worlds
+        self.autoreset = autoreset
+        point = game.scenes[0].ball.radius == 0.0
+        self.state: State = new_state(game.tables, worlds, 1, point)
+        self.episodes: Array = np.zeros(worlds, EPISODE)
+        self.results: Results = new_results(worlds, len(game.observation_high))
+        self._start = np.full((worlds, 4), np.nan)
+        self._actions = np.zeros(worlds)
+        self._borders = np.linspace(0, worlds, min(num_threads, worlds) + 1).astype(int)
+        self._threads: ThreadPoolExecutor | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_threads": None}
+
+    def seed(self, world: int, seed: np.uint64) -> None:
+        """Let the stream of episodes of a world begin anew from `seed`."""
+        self.episodes[world].world_seed = seed
+        self.episodes[world].episodes = 0
+
+    def reset(self, mask: Mask, start: npt.NDArray[np.float64] | None = None) -> None:
+        """Begin the next episode in the worlds of `mask`; `start` (worlds, 4): x, y, vx, vy, NaN for the seed's own."""
+        game, r = self.game, self.results
+        begin = self._start if start is None else start
+        game.reset_worlds(self.state, game.tables, game.rules, self.episodes, begin, mask, r)
+
+    def step(self, actions: Array) -> int:
+        """One step of every world; returns how many episodes ended.
+
+        actions: (worlds,) whole numbers where `game.discrete_actions`, otherwise (worlds,) or (worlds, 1) floats, which
+        are clipped to [-1, 1]. Raises ValueError, before anything moves, for NaN, infinity, or no such action.
+        """
+        self._actions[:] = self._speeds(np.asarray(actions))
+        game = self.game
+        step = partial(
+            game.step_worlds,
+            self.state, game.tables, game.rules, self.episodes, self._start, self._actions, self.results,
+            self.autoreset,
+        )  # fmt: skip
+        slices = list(zip(self._borders[:-1].tolist(), self._borders[1:].tolist(), strict=True))
+        if len(slices) == 1:
+            return step(0, self.worlds)
+        if self._threads is None:
+            self._threads = ThreadPoolExecutor(len(slices))
+        return sum(self._threads.map(lambda part: step(*part), slices))
+
+    def _speeds(self, actions: Array) -> Array:
+        if self.game.discrete_actions is not None:
+            if not (np.issubdtype(actions.dtype, np.integer) and actions.shape in ((self.worlds,), ())):
+                raise ValueError(f"actions = {actions!r}: must be {self.worlds} whole numbers, one per world")
+            if (actions < 0).any() or (actions >= self.game.discrete_actions).any():
+                raise ValueError(f"actions = {actions!r}: each must be in 0 to {self.game.discrete_actions - 1}")
+            return self.game.speeds(actions)
+        if actions.size != self.worlds:
+            raise ValueError(f"actions of shape {actions.shape}: must have {self.worlds} numbers, one per world")
+        if not np.isfinite(actions).all():
+            raise ValueError(f"actions = {actions!r}: must be finite")
+        return np.clip(actions.reshape(self.worlds).astype(np.float64), -1.0, 1.0)
+
+    def end_info(self, world: int) -> dict[str, Any]:
+        """What is said of the episode that ended in the last step of `world`: flat scalars."""
+        books = self.results.ended[world]
+        bounces, capped = self.results.ended_worlds[world]
+        return {
+            "end_reason": END_REASONS[books.end],
+            "points_bumpers": float(books.score),
+            "bounces": int(bounces),
+            "touches": int(books.touches),
+            "speed_capped": int(capped),
+            "game_seconds": float(books.frames / FPS),
+        }
+
+    def view(self, world: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Balls (1, 4): x, y [m], vx, vy [m/s], and centres of the paddles (m, 2) [m] of a world now."""
+        rails = self.game.tables.rails
+        balls, paddles = np.empty((1, 4)), np.empty((0 if rails is None else rails.shape[1], 2))
+        view(self.state, self.game.tables, world, balls, paddles)
+        return balls, paddles
+
+    def close(self) -> None:
+        """End the threads."""
+        if self._threads is not None:
+            self._threads.shutdown()
+            self._threads = None

@@ -1,0 +1,92 @@
+"""What every game keeps for each world beside the engine's state, and what it says of an episode."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.engine.jit import Record, borrow, function
+from bounce_env.engine.layout import record
+from bounce_env.games.streams import EPISODES, bits
+
+Array = npt.NDArray[Any]
+
+EPISODE = record(
+    world_seed="u8", episodes="i8",  # the world's stream of episodes and how many it has begun
+    seed="u8",  # of the present episode
+    frames="i8",  # 1 / fps each, since the episode began
+    score="f8",
+    touches="i8",  # hits of the parts that the agent moves
+    last_action="f8",  # what the parts do: repeated when actions are sticky
+    end="i8",  # how the episode has ended
+)  # fmt: skip
+
+# How an episode ends; END_REASONS names them in info["end_reason"].
+RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET = 0, 1, 2, 3
+END_REASONS = ("", "drained", "time_limit", "budget")
+
+# Autoreset modes, as in gymnasium.vector.AutoresetMode.
+NEXT_STEP, SAME_STEP, DISABLED = 0, 1, 2
+
+FPS = 60  # frames a second, the unit of `frame_skip` and of sticky actions
+
+# Events in one step of a game; more is a ball that rattles itself to death, and truncates the episode.
+MAX_EVENTS = 500
+
+
+class Results(NamedTuple):
+    """What a step returns, per world; written in place by the kernel."""
+
+    observations: Array  # (worlds, size) float32
+    rewards: Array  # (worlds,) float64
+    terminated: Array  # (worlds,) bool
+    truncated: Array  # (worlds,) bool
+    final_observations: Array  # (worlds, size) float32: of episodes that ended in this step, when reset in the same
+    ended: Array  # (worlds,) EPISODE: the books of the episodes that ended in this step
+    ended_worlds: Array  # (worlds, 2) int64: their bounces and capped bounces
+
+
+def new_results(worlds: int, size: int) -> Results:
+    """Zeroed results for observations of `size` numbers."""
+    return Results(
+        observations=np.zeros((worlds, size), np.float32),
+        rewards=np.zeros(worlds),
+        terminated=np.zeros(worlds, np.bool_),
+        truncated=np.zeros(worlds, np.bool_),
+        final_observations=np.zeros((worlds, size), np.float32),
+        ended=np.zeros(worlds, EPISODE),
+        ended_worlds=np.zeros((worlds, 2), np.int64),
+    )
+
+
+@function
+def borrow_results(results: Results) -> Results:
+    """The same results, borrowed; see `engine.jit.borrow`."""
+    return Results(
+        borrow(results.observations),
+        borrow(results.rewards),
+        borrow(results.terminated),
+        borrow(results.truncated),
+        borrow(results.final_observations),
+        borrow(results.ended),
+        borrow(results.ended_worlds),
+    )
+
+
+@function
+def begin_episode(episode: Record) -> None:
+    """Give the next episode of a world its seed and clear its books."""
+    episode.seed = bits(episode.world_seed, EPISODES, episode.episodes)
+    episode.episodes += 1
+    episode.frames, episode.touches, episode.end = 0, 0, RUNNING
+    episode.score, episode.last_action = 0.0, 0.0
+
+
+@function
+def close_books(results: Results, episode: Record, world: Record, w: int) -> None:
+    """Note how the episode of world `w` ended, before anything of it is reset."""
+    ended = results.ended[w]
+    ended.world_seed, ended.episodes, ended.seed = episode.world_seed, episode.episodes, episode.seed
+    ended.frames, ended.score, ended.touches = episode.frames, episode.score, episode.touches
+    ended.last_action, ended.end = episode.last_action, episode.end
+    results.ended_worlds[w, 0], results.ended_worlds[w, 1] = world.bounces, world.speed_capped

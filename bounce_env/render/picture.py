@@ -1,0 +1,22 @@
+"""What one frame shows."""
+
+from dataclasses import dataclass
+
+import numpy.typing as npt
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A snapshot of all that changes in a scene; a `Renderer` checks it against its scene.
+
+    balls: centres, metres, shape (k, 2). paddles: centres of the scene's paddles in the order of its
+    elements, metres, shape (m, 2). alive: which balls are in play and drawn, shape (k,); None for all.
+    hits: how often each element was struck since the last frame, shape (len(scene.elements),): what was
+    struck lights up; None for nothing. score: printed in a corner; None for no text.
+    """
+
+    balls: npt.ArrayLike
+    paddles: npt.ArrayLike = ()
+    alive: npt.ArrayLike | None = None
+    hits: npt.ArrayLike | None = None
+    score: float | None = None

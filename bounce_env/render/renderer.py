@@ -1,0 +1,97 @@
+"""The still scene drawn once; each frame copies it and draws what moves or was just struck."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.render.lazy_pygame import load_pygame
+from bounce_env.render.looks import ball_look, paddle_look, rail_look, still_look
+from bounce_env.render.picture import Picture
+from bounce_env.render.projection import Projection
+from bounce_env.scene import Paddle, Scene
+
+
+class Renderer:
+    """Draws one scene at one size, without a display.
+
+    scene: what to draw. width, height: of a frame in pixels; see `Projection.fit` for what is left out.
+    Raises ValueError for a bad size, `gymnasium.error.DependencyNotInstalled` without pygame.
+
+    projection: from metres to the frame's pixels, and back.
+    """
+
+    def __init__(self, scene: Scene, width: int | None = None, height: int | None = None) -> None:
+        load_pygame()
+        from bounce_env.render import painter  # noqa: PLC0415 (pygame is an extra: only who draws needs it)
+
+        self.projection = Projection.fit(scene.bounds, width, height)
+        size = (self.projection.width, self.projection.height)
+        paddles = {i: e for i, e in enumerate(scene.elements) if isinstance(e, Paddle)}
+        still = {i: e for i, e in enumerate(scene.elements) if not isinstance(e, Paddle)}
+        rails = [rail_look(paddle, self.projection) for paddle in paddles.values()]
+        at_rest = [still_look(e, scene, self.projection, lit=False) for e in still.values()]
+        self._painter = painter
+        self._elements = len(scene.elements)
+        self._background = painter.still_picture(*size, tuple(stroke for look in (*rails, *at_rest) for stroke in look))
+        self._flashes = {
+            i: painter.Overlay(still_look(e, scene, self.projection, lit=True), *size) for i, e in still.items()
+        }
+        self._paddles = {
+            i: tuple(painter.Sprite(paddle_look(e, self.projection, lit=lit)) for lit in (False, True))
+            for i, e in paddles.items()
+        }
+        self._ball = painter.Sprite(ball_look(scene, self.projection))
+        self._label = painter.Label(*size)
+
+    def frame(self, picture: Picture) -> npt.NDArray[np.uint8]:
+        """A new C-contiguous array of RGB pixels, shape (height, width, 3), rows from the top.
+
+        The same picture gives the same bytes. Raises ValueError, and draws nothing, if a field of the
+        picture has a wrong shape or holds what is not finite.
+        """
+        balls = self.projection.to_pixels(_points("balls", picture.balls))
+        paddles = self.projection.to_pixels(_points("paddles", picture.paddles, len(self._paddles)))
+        alive = _flags("alive", picture.alive, len(balls), missing=True)
+        hits = _flags("hits", picture.hits, self._elements, missing=False)
+        text = None if picture.score is None else _printed(picture.score)
+
+        pixels = self._background.copy()
+        target = self._painter.surface_of(pixels)
+        if text is not None:
+            self._label.draw(target, text)
+        for i in np.flatnonzero(hits):
+            if i in self._flashes:
+                self._flashes[i].draw(target)
+        for (i, (calm, lit)), (x, y) in zip(self._paddles.items(), paddles.tolist(), strict=True):
+            (lit if hits[i] else calm).draw(target, x, y)
+        for x, y in balls[alive].tolist():
+            self._ball.draw(target, x, y)
+        return pixels
+
+
+def _points(name: str, value: npt.ArrayLike, count: int | None = None) -> npt.NDArray[np.float64]:
+    points = np.asarray(value, dtype=np.float64)
+    if points.size == 0:
+        points = points.reshape(0, 2)
+    if points.ndim != 2 or points.shape[1] != 2 or (count is not None and len(points) != count):
+        rows = "k" if count is None else count
+        raise ValueError(f"{name} has shape {points.shape}: must be ({rows}, 2), centres in metres")
+    if not np.isfinite(points).all():
+        raise ValueError(f"{name} = {points.tolist()}: must be finite, metres")
+    return points
+
+
+def _flags(name: str, value: npt.ArrayLike | None, count: int, *, missing: bool) -> npt.NDArray[np.bool_]:
+    if value is None:
+        return np.full(count, missing)
+    flags = np.asarray(value) != 0
+    if flags.shape != (count,):
+        raise ValueError(f"{name} has shape {flags.shape}: must be ({count},)")
+    return flags
+
+
+def _printed(score: float) -> str:
+    if not math.isfinite(score):
+        raise ValueError(f"score = {score!r}: must be None or finite")
+    return f"{score:,.0f}" if score == round(score) else f"{score:,.2f}"

@@ -1,0 +1,119 @@
+"""A native Stable-Baselines3 VecEnv over the same batch: no wrapper, no Python object per world."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from stable_baselines3.common.vec_env import VecEnv
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
+
+from bounce_env.vector import BounceVectorEnv
+
+
+class BounceVecEnv(VecEnv):
+    """`n_envs` worlds of the environment `env_id` for SB3's algorithms.
+
+    env_id: "Bounce/..."; further keyword arguments are those of the environment (its card), and `num_threads`. Info
+    holds what the card says, and at an episode's end the "episode" statistics that SB3's Monitor would add.
+    Raises ValueError for what the environment does not take.
+    """
+
+    def __init__(self, env_id: str, n_envs: int = 1, *, seed: int | None = None, **kwargs: Any) -> None:
+        envs = gym.make_vec(
+            env_id,
+            num_envs=n_envs,
+            vectorization_mode="vector_entry_point",
+            autoreset_mode=AutoresetMode.SAME_STEP.name,
+            **kwargs,
+        )
+        assert isinstance(envs.unwrapped, BounceVectorEnv)
+        self._envs: BounceVectorEnv = envs.unwrapped
+        self._actions: Any = None
+        super().__init__(n_envs, envs.single_observation_space, envs.single_action_space)
+        self.render_mode = envs.render_mode
+        self.metadata = envs.metadata
+        self.spec = envs.spec
+        self._lengths = np.zeros(n_envs, np.int64)
+        self.seed(seed)
+
+    def reset(self) -> VecEnvObs:
+        """Begin an episode in every world; seeds of `seed()` are used once, then the streams go on."""
+        given = any(seed is not None for seed in self._seeds)
+        observations, info = self._envs.reset(seed=self._seeds if given else None, options=self._one_option())
+        self._lengths[:] = 0
+        self.reset_infos = self._rows(info)
+        self._reset_seeds()
+        self._reset_options()
+        return observations
+
+    def step_async(self, actions: np.ndarray) -> None:
+        """Keep the actions for `step_wait`."""
+        self._actions = actions
+
+    def step_wait(self) -> VecEnvStepReturn:
+        """One step of every world. Rewards float32; a finished world is reset, its last observation is in its info."""
+        observations, rewards, terminated, truncated, info = self._envs.step(self._actions)
+        dones = terminated | truncated
+        self._lengths += 1
+        infos: list[dict[str, Any]] = self._rows(info)
+        for w in np.flatnonzero(dones).tolist():
+            final = info["final_info"]
+            infos[w] = {key: _plain(value[w]) for key, value in final.items() if key[0] != "_"}
+            infos[w]["terminal_observation"] = info["final_obs"][w]
+            infos[w]["TimeLimit.truncated"] = bool(truncated[w] and not terminated[w])
+            infos[w]["episode"] = {
+                "r": infos[w]["score"],
+                "l": int(self._lengths[w]),
+                "t": infos[w]["game_seconds"],
+            }
+            self._lengths[w] = 0
+        return observations, rewards.astype(np.float32), dones, infos
+
+    def close(self) -> None:
+        """End the threads."""
+        self._envs.close()
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        """An attribute of the environment, once per index."""
+        source = self if attr_name in ("render_mode", "spec", "metadata") else self._envs
+        return [getattr(source, attr_name) for _ in self._get_indices(indices)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        """Not possible for some worlds only: raises NotImplementedError."""
+        raise NotImplementedError("the worlds of a BounceVecEnv share one batch: pass keyword arguments when making it")
+
+    def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
+        """Call a method of the environment once, and give its result once per index."""
+        result = getattr(self._envs, method_name)(*args, **kwargs)
+        return [result for _ in self._get_indices(indices)]
+
+    def env_is_wrapped(
+        self, wrapper_class: type[gym.Wrapper[Any, Any, Any, Any]], indices: VecEnvIndices = None
+    ) -> list[bool]:
+        """Whether there is a wrapper: never, except that episodes are monitored."""
+        from stable_baselines3.common.monitor import Monitor  # noqa: PLC0415
+
+        return [wrapper_class is Monitor for _ in self._get_indices(indices)]
+
+    def get_images(self) -> Sequence[np.ndarray | None]:
+        """One frame per world."""
+        frames: Iterable[np.ndarray] | None = self._envs.render()
+        return [None] * self.num_envs if frames is None else list(frames)
+
+    def _rows(self, info: dict[str, Any]) -> list[dict[str, Any]]:
+        scores = info["score"].tolist()
+        return [{"score": score, "ball": 0} for score in scores]
+
+    def _one_option(self) -> dict[str, Any] | None:
+        given = [options for options in self._options if options]
+        if not given:
+            return None
+        if any(options != self._options[0] for options in self._options):
+            raise ValueError("options: must be the same for every world, pairs may be given one row per world")
+        return given[0]
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value

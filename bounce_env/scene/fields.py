@@ -1,0 +1,153 @@
+"""What one field of a spec takes: numbers, points, flags and names, with the words that an error prints."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from inspect import signature
+from numbers import Real
+from types import UnionType
+from typing import Annotated
+
+import numpy as np
+from pydantic import GetCoreSchemaHandler, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, ErrorDetails, InitErrorDetails, PydanticCustomError, core_schema
+
+LARGEST = 1e9
+"""No number of a scene is larger: products of a few of them stay far from overflow in float64."""
+
+SMALLEST = 1e-9
+"""No positive length or speed of a scene is smaller: its square stays far from underflow."""
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """Annotation of a spec's field: `convert` returns the value to keep or raises, `words` say what it takes.
+
+    Pydantic's own conversions are replaced, because they take `True` and `"1"` for 1.0, keep a NumPy
+    scalar as it is, and name one violated bound where a user wants to read all that is allowed.
+    """
+
+    words: str
+    convert: Callable[[object], object] = field(repr=False)
+
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self._check)
+
+    def _check(self, value: object) -> object:
+        try:
+            return self.convert(value)
+        except (TypeError, ValueError, OverflowError):
+            raise not_allowed(self.words) from None
+
+
+def not_allowed(words: str) -> PydanticCustomError:
+    """The error of a field whose value is not what `words` allow."""
+    return PydanticCustomError("not_allowed", "must be {words}", {"words": words})
+
+
+def required(words: str) -> PydanticCustomError:
+    """The error of a field that must be given; `words` say with what value."""
+    return PydanticCustomError("required", "required: {words}", {"words": words})
+
+
+def explain(error: ValidationError, spec: type) -> ValidationError:
+    """The error of a spec, in which each field is named and a missing or unknown one says what is allowed."""
+    names = list(signature(spec).parameters)
+    fields: dict[str, FieldInfo] = spec.__pydantic_fields__  # type: ignore[attr-defined]
+
+    def explained(details: ErrorDetails) -> InitErrorDetails:
+        loc, value, message, what = details["loc"], details["input"], details["msg"], details["type"]
+        position = loc[0]
+        if isinstance(position, int) and position < len(names) and what != "invalid_key":
+            loc = (names[position], *loc[1:])
+        match what:
+            case "missing":
+                allowed = next(item for item in fields[str(loc[0])].metadata if isinstance(item, Allowed))
+                kind, value = required(allowed.words), None  # not the dump of all the other fields
+            case "required":
+                kind = PydanticCustomError("required", "{message}", {"message": message})
+            case "unexpected_keyword_argument" | "invalid_key":
+                words = f"unknown field: must be one of {', '.join(names)}"
+                kind = PydanticCustomError("unknown", "{words}", {"words": words})
+            case _:
+                kind = PydanticCustomError("not_allowed", "{message}", {"message": message})
+        return InitErrorDetails(type=kind, loc=loc, input=value)
+
+    return ValidationError.from_exception_data(error.title, list(map(explained, error.errors())))
+
+
+def _number(value: object, low: float, high: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError
+    number = float(value) + 0.0  # -0.0 becomes 0.0: equal scenes have equal bits
+    if not low <= number <= high:  # also false for NaN
+        raise ValueError
+    return number
+
+
+def _zero_or_more(value: object) -> float:
+    return _number(value, 0.0, LARGEST)
+
+
+def _zero_to_one(value: object) -> float:
+    return _number(value, 0.0, 1.0)
+
+
+def _positive(value: object) -> float:
+    return _number(value, SMALLEST, LARGEST)
+
+
+def _zero_or_positive(value: object) -> float:
+    number = _zero_or_more(value)
+    return number if number == 0.0 else _positive(number)
+
+
+def _zero(value: object) -> float:
+    return _number(value, 0.0, 0.0)
+
+
+def _positive_or_none(value: object) -> float | None:
+    return None if value is None else _positive(value)
+
+
+def _vector(value: object) -> tuple[float, float]:
+    if not isinstance(value, tuple | list | np.ndarray):
+        raise TypeError
+    x, y = value
+    return _number(x, -LARGEST, LARGEST), _number(y, -LARGEST, LARGEST)
+
+
+def _flag(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError
+    return value
+
+
+def _name(value: object) -> str:
+    if not isinstance(value, str) or not value.isprintable():
+        raise TypeError
+    return str(value)
+
+
+def instance_of(spec: type | UnionType) -> Callable[[object], object]:
+    """Converter that keeps an instance of the spec and refuses all else."""
+
+    def convert(value: object) -> object:
+        if not isinstance(value, spec):
+            raise TypeError
+        return value
+
+    return convert
+
+
+Vector = Annotated[tuple[float, float], Allowed(f"two numbers [x, y], each from {-LARGEST:g} to {LARGEST:g}", _vector)]
+ZeroOrMore = Annotated[float, Allowed(f"a number >= 0 (at most {LARGEST:g})", _zero_or_more)]
+ZeroToOne = Annotated[float, Allowed("a number >= 0 and <= 1", _zero_to_one)]
+Positive = Annotated[float, Allowed(f"a number > 0 (from {SMALLEST:g} to {LARGEST:g})", _positive)]
+ZeroOrPositive = Annotated[float, Allowed(f"0 or a number from {SMALLEST:g} to {LARGEST:g}", _zero_or_positive)]
+PositiveOrNone = Annotated[float | None, Allowed(f"a number > 0 (from {SMALLEST:g} to {LARGEST:g})", _positive_or_none)]
+RestSpeed = Annotated[
+    float, Allowed("0: a rest speed > 0 is not supported in this release, which has no contact", _zero)
+]
+Flag = Annotated[bool, Allowed("true or false", _flag)]
+Name = Annotated[str, Allowed("printable text", _name)]

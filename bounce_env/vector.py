@@ -1,0 +1,228 @@
+"""The vector environments: many worlds of one game in one batch, without a Python object per world."""
+
+from collections.abc import Sequence
+from os import PathLike
+from typing import Any, Literal
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+
+from bounce_env.env import PaddleEnv, action_space, observation_space, picture_of, world_seed
+from bounce_env.games import episode
+from bounce_env.games.batch import Batch, Game
+from bounce_env.games.paddle import PaddleGame, PaddleOptions
+from bounce_env.games.start import start_rows
+from bounce_env.render import Renderer
+from bounce_env.scene import Scene
+
+Observations = npt.NDArray[np.float32]
+Flags = npt.NDArray[np.bool_]
+
+_AUTORESET = {
+    AutoresetMode.NEXT_STEP: episode.NEXT_STEP,
+    AutoresetMode.SAME_STEP: episode.SAME_STEP,
+    AutoresetMode.DISABLED: episode.DISABLED,
+}
+
+
+class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
+    """A game as a Gymnasium vector environment.
+
+    World i of a reset with `seed` plays, to the bit, what the single env plays after `reset(seed=seed + i)`.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 (Gymnasium's)
+        "render_modes": ["rgb_array"],
+        "render_fps": 30,
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+    }
+
+    def __init__(
+        self,
+        game: Game,
+        num_envs: int,
+        *,
+        num_threads: int,
+        autoreset_mode: AutoresetMode | str,
+        copy: bool,
+        render_mode: str | None,
+        width: int | None,
+        height: int | None,
+    ) -> None:
+        for name, value in (("num_envs", num_envs), ("num_threads", num_threads)):
+            if not isinstance(value, int | np.integer) or value < 1:
+                raise ValueError(f"{name} = {value!r}: must be a whole number >= 1")
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            raise ValueError(f"render_mode = {render_mode!r}: must be one of {[None, *self.metadata['render_modes']]}")
+        mode = _autoreset_mode(autoreset_mode)
+        self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds), "autoreset_mode": mode}
+        self.num_envs = int(num_envs)
+        self.render_mode = render_mode
+        self.single_observation_space = observation_space(game)
+        self.single_action_space = action_space(game)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self._mode = mode
+        self._copy = copy
+        self._size = (width, height)
+        self._batch = Batch(game, self.num_envs, autoreset=_AUTORESET[mode], num_threads=int(num_threads))
+        self._renderer: Renderer | None = None
+        self._seeded = np.zeros(self.num_envs, np.bool_)
+        self._ended = np.ones(self.num_envs, np.bool_)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_renderer": None}
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[Observations, dict[str, Any]]:
+        """Begin the next episode in all worlds, or in those of `options["reset_mask"]` (bool, one per world).
+
+        seed: an int (world i gets seed + i) or one per world. Other options as for the single env, one pair for all or
+        one row per world. Raises ValueError, and changes nothing, for what is not allowed.
+        """
+        options = dict(options or {})
+        mask = self._reset_mask(options.pop("reset_mask", None))
+        start = start_rows(self._batch.game, self.num_envs, options)
+        self._seed_worlds(seed, mask)
+        self._batch.reset(mask, start)
+        self._ended[mask] = False
+        return self._observations(), self._info(mask)
+
+    def step(self, actions: Any) -> tuple[Observations, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
+        """One step of every world. Mode DISABLED raises ResetNeeded while a finished world has not been reset."""
+        if self._mode == AutoresetMode.DISABLED and self._ended.any():
+            finished = np.flatnonzero(self._ended)[:8].tolist()
+            raise gym.error.ResetNeeded(
+                f'worlds {finished} have ended: reset(options={{"reset_mask": ...}}) them first'
+            )
+        if not self._seeded.all():
+            raise gym.error.ResetNeeded("call reset() before step()")
+        ended = self._batch.step(np.asarray(actions))
+        r = self._batch.results
+        info = self._info(np.ones(self.num_envs, np.bool_))
+        if ended:
+            self._tell_ends(info, r.terminated | r.truncated)
+        if self._mode == AutoresetMode.DISABLED:
+            self._ended = r.terminated | r.truncated
+        return self._observations(), r.rewards.copy(), r.terminated.copy(), r.truncated.copy(), info
+
+    def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
+        """One frame (height, width, 3) per world in mode rgb_array."""
+        if self.render_mode is None:
+            gym.logger.warn('render() needs a render mode: gym.make_vec(..., render_mode="rgb_array")')
+            return None
+        if self._renderer is None:
+            self._renderer = Renderer(self._batch.game.scenes[0], *self._size)
+        return tuple(self._renderer.frame(picture_of(self._batch, w)) for w in range(self.num_envs))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """End the threads."""
+        self._batch.close()
+
+    def _reset_mask(self, mask: Any) -> Flags:
+        if mask is None:
+            return np.ones(self.num_envs, np.bool_)
+        if not (isinstance(mask, np.ndarray) and mask.dtype == np.bool_ and mask.shape == (self.num_envs,)):
+            raise ValueError(f"options['reset_mask'] = {mask!r}: must be a bool array of shape ({self.num_envs},)")
+        if not mask.any():
+            raise ValueError("options['reset_mask']: must be True for at least one world")
+        return mask
+
+    def _seed_worlds(self, seed: int | Sequence[int | None] | None, mask: Flags) -> None:
+        """Seed the worlds of `mask` as the single env would: by their own seed, or once at random."""
+        if isinstance(seed, int | np.integer):
+            self._np_random, self._np_random_seed = seeding.np_random(int(seed))
+            seed = [int(seed) + i for i in range(self.num_envs)]
+        if seed is None:
+            seed = [None] * self.num_envs
+        if len(seed) != self.num_envs:
+            raise ValueError(f"seed: must be one number, or {self.num_envs}, one per world; got {len(seed)}")
+        for w in np.flatnonzero(mask).tolist():
+            own = seed[w]
+            if own is not None:
+                self._batch.seed(w, world_seed(seeding.np_random(own)[0]))
+            elif not self._seeded[w]:
+                self._batch.seed(w, world_seed(self.np_random))
+        self._seeded |= mask
+
+    def _observations(self) -> Observations:
+        observations = self._batch.results.observations
+        return observations.copy() if self._copy else observations
+
+    def _info(self, mask: Flags) -> dict[str, Any]:
+        return {
+            "score": self._batch.episodes["score"].copy(),
+            "_score": mask,
+            "ball": np.zeros(self.num_envs, np.int64),
+            "_ball": mask,
+        }
+
+    def _tell_ends(self, info: dict[str, Any], ended: Flags) -> None:
+        """Add what is said at an episode's end, as Gymnasium's own vector envs do: arrays with masks."""
+        told: dict[str, Any] = {}
+        for w in np.flatnonzero(ended).tolist():
+            told = self._add_info(told, self._batch.end_info(w), w)
+        if self._mode != AutoresetMode.SAME_STEP:
+            info.update(told)
+            return
+        r = self._batch.results
+        final = {"score": np.where(ended, r.ended["score"], 0.0), "_score": ended.copy()}
+        final |= {"ball": np.zeros(self.num_envs, np.int64), "_ball": ended.copy()}
+        observations = np.full(self.num_envs, None, dtype=object)
+        for w in np.flatnonzero(ended).tolist():
+            observations[w] = r.final_observations[w].copy()
+        info.update(final_obs=observations, _final_obs=ended.copy(), final_info=final | told, _final_info=ended.copy())
+
+
+def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:
+    for known in AutoresetMode:
+        if mode in (known, known.name, known.value):
+            return known
+    raise ValueError(f"autoreset_mode = {mode!r}: must be one of {', '.join(m.name for m in AutoresetMode)}")
+
+
+class PaddleVectorEnv(BounceVectorEnv):
+    __doc__ = PaddleEnv.__doc__
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        max_episode_steps: int | None = None,
+        num_threads: int = 1,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        copy: bool = True,
+        scene: str | PathLike[str] | Scene = "paddle",
+        action: Literal["continuous", "discrete"] = "continuous",
+        frame_skip: int = 2,
+        repeat_action_probability: float = 0.0,
+        time_limit: float | None = 60.0,
+        render_mode: str | None = None,
+        width: int | None = None,
+        height: int | None = None,
+    ) -> None:
+        options = PaddleOptions(
+            scene=scene,
+            action=action,
+            frame_skip=frame_skip,
+            repeat_action_probability=repeat_action_probability,
+            time_limit=time_limit,
+        )
+        super().__init__(
+            PaddleGame(options).with_step_limit(max_episode_steps),
+            num_envs,
+            num_threads=num_threads,
+            autoreset_mode=autoreset_mode,
+            copy=copy,
+            render_mode=render_mode,
+            width=width,
+            height=height,
+        )

@@ -1,0 +1,79 @@
+"""A scene written as TOML and read back is the same scene, to the bit."""
+
+import tomllib
+from dataclasses import replace
+
+import pytest
+from conftest import soak_count
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from bounce_env.scene import (
+    Ball,
+    Bumper,
+    Paddle,
+    Scene,
+    Sensor,
+    Wall,
+    builtin_scenes,
+    dump_scene,
+    load_scene,
+    scene_from_dict,
+)
+
+# Sizes are such that no scene is refused; the digits of all numbers are arbitrary.
+SIZE = st.floats(0.01, 10.0)
+FACTOR = st.floats(0.0, 10.0)
+POINT = st.tuples(st.floats(-100.0, 100.0), st.floats(-100.0, 100.0))
+SEGMENT = st.tuples(POINT, POINT).filter(lambda ends: abs(ends[0][0] - ends[1][0]) > 0.01)
+SURFACE = {"b": FACTOR, "f": st.floats(0.0, 1.0), "kick": FACTOR, "kick_threshold": FACTOR}
+NAME = st.text(
+    st.characters(exclude_categories=["C", "Z"]) | st.sampled_from(" \"'\\#=[]"), min_size=1, max_size=8
+)
+ELEMENT = st.one_of(
+    st.builds(lambda ends, **fields: Wall(*ends, **fields), SEGMENT, **SURFACE),
+    st.builds(Bumper, POINT, SIZE, **SURFACE),
+    st.builds(
+        lambda ends, **fields: Paddle(*ends, **fields),
+        SEGMENT,
+        half_width=st.just(0.0) | SIZE,
+        radius=SIZE,
+        max_speed=SIZE,
+        **SURFACE,
+    ),
+    st.builds(lambda ends, drain: Sensor(*ends, drain=drain), SEGMENT, st.booleans()),
+)
+SCENE = st.builds(
+    lambda elements, names, **fields: Scene(
+        elements=[replace(element, name=name) for element, name in zip(elements, names, strict=False)],
+        **fields,
+    ),
+    st.lists(ELEMENT, max_size=6),
+    st.lists(NAME, min_size=6, max_size=6, unique=True),
+    gravity=POINT,
+    ball=st.builds(Ball, st.just(0.0) | SIZE, FACTOR, st.floats(0.0, 1.0)),
+    max_speed=st.floats(10.0, 1e9, exclude_min=True),
+)
+
+
+def read_back(scene: Scene) -> Scene:
+    return scene_from_dict(tomllib.loads(dump_scene(scene)))
+
+
+@settings(max_examples=soak_count(100, 5000), derandomize=True, deadline=None)
+@given(SCENE)
+@example(Scene(elements=[Sensor((0, 0), (1, 0), name=r'a "b" \n # = [c]')]))
+def test_any_scene_comes_back(scene):
+    assert read_back(scene) == scene
+    assert repr(read_back(scene)) == repr(scene)  # every digit of every float
+
+
+@pytest.mark.parametrize("name", builtin_scenes())
+def test_built_in_scenes_come_back_from_a_file(name, tmp_path):
+    path = tmp_path / "copy.toml"
+    path.write_text(dump_scene(load_scene(name)), encoding="utf-8")
+    assert load_scene(path) == load_scene(name)
+
+
+def test_the_smallest_scene_comes_back():
+    assert read_back(Scene()) == Scene()

@@ -1,0 +1,292 @@
+"""Each spec checks its own fields when it is made in Python."""
+
+import copy
+import dataclasses
+import math
+import pickle
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall
+
+SEGMENT = {"start": (0.0, 0.0), "end": (3.0, 4.0)}
+CIRCLE = {"center": (0.0, 0.0), "radius": 1.0}
+RAIL = {"rail_start": (0.0, 0.0), "rail_end": (3.0, 4.0), "half_width": 0.1, "radius": 0.1, "max_speed": 1.0}
+GOOD = {Ball: {}, Wall: SEGMENT, Bumper: CIRCLE, Paddle: RAIL, Sensor: SEGMENT, Scene: {}}
+
+ZERO_OR_MORE = "must be a number >= 0 (at most 1e+09)"
+ZERO_TO_ONE = "must be a number >= 0 and <= 1"
+POSITIVE = "must be a number > 0 (from 1e-09 to 1e+09)"
+ZERO_OR_POSITIVE = "must be 0 or a number from 1e-09 to 1e+09"
+NO_REST_SPEED = "must be 0: a rest speed > 0 is not supported in this release, which has no contact"
+POINT = "must be two numbers [x, y], each from -1e+09 to 1e+09"
+SURFACE = {"b": ZERO_OR_MORE, "f": ZERO_TO_ONE, "kick": ZERO_OR_MORE, "kick_threshold": ZERO_OR_MORE}
+
+NUMBERS = [
+    *((spec, field, words) for spec in (Wall, Bumper, Paddle) for field, words in SURFACE.items()),
+    (Ball, "radius", ZERO_OR_POSITIVE),
+    (Ball, "b", ZERO_OR_MORE),
+    (Ball, "f", ZERO_TO_ONE),
+    (Bumper, "radius", POSITIVE),
+    (Paddle, "half_width", ZERO_OR_POSITIVE),
+    (Paddle, "radius", POSITIVE),
+    (Paddle, "max_speed", POSITIVE),
+    (Scene, "max_speed", POSITIVE),
+    (Scene, "rest_speed", NO_REST_SPEED),
+]
+POINTS = [
+    (Wall, "start"),
+    (Wall, "end"),
+    (Bumper, "center"),
+    (Paddle, "rail_start"),
+    (Paddle, "rail_end"),
+    (Sensor, "start"),
+    (Sensor, "end"),
+    (Scene, "gravity"),
+]
+NO_NUMBER = [
+    True,
+    False,
+    np.True_,
+    "1",
+    "",
+    [1.0],
+    {},
+    1j,
+    math.nan,
+    np.nan,
+    math.inf,
+    -math.inf,
+    10**400,
+    -1,
+    2e9,
+]
+NO_POINT = [
+    *[(), (0.0,), (0.0, 0.0, 0.0), 1.0, "12", None, {0: 0.0, 1: 1.0}, {1.0, 2.0}],
+    *[(True, 0.0), (0.0, "0"), (None, 0.0), (0.0, math.nan), (math.inf, 0.0), (0.0, -2e9), (10**400, 0.0)],
+    *[((0.0, 0.0), (1.0, 1.0)), [[0.0], 1.0], np.zeros((2, 2)), np.zeros(3), np.array(["0", "0"])],
+]
+
+
+def name(part: object) -> str | None:
+    return part.__name__ if isinstance(part, type) else None if isinstance(part, str) else f"{part!r:.20}"
+
+
+def refusals(spec, *args, **fields) -> list[tuple[str, object, str]]:
+    """Field, value and message of all that the spec refuses; its text holds them and the spec's name."""
+    with pytest.raises(ValueError, match=f"for {spec.__name__}\n") as caught:
+        spec(*args, **fields)
+    errors = [(".".join(map(str, e["loc"])), e["input"], e["msg"]) for e in caught.value.errors()]
+    for field, _, message in errors:
+        assert f"\n{field}\n  {message} [" in str(caught.value)
+        assert "input_value=" in str(caught.value)
+    return errors
+
+
+@pytest.mark.parametrize(("spec", "field", "words"), NUMBERS, ids=name)
+@pytest.mark.parametrize("value", NO_NUMBER, ids=name)
+def test_refuses_what_is_no_number_of_its_range(spec, field, words, value):
+    [(refused, given, message)] = refusals(spec, **{**GOOD[spec], field: value})
+    assert (refused, message) == (field, words)
+    assert given is value
+
+
+@pytest.mark.parametrize(("spec", "field"), POINTS, ids=name)
+@pytest.mark.parametrize("value", NO_POINT, ids=name)
+def test_refuses_what_is_no_point(spec, field, value):
+    [(refused, given, message)] = refusals(spec, **{**GOOD[spec], field: value})
+    assert (refused, message) == (field, POINT)
+    assert given is value
+
+
+@pytest.mark.parametrize(
+    ("spec", "field", "low", "high"),
+    [
+        (Ball, "radius", 0.0, 1e9),
+        (Ball, "radius", 1e-9, 1e9),
+        (Ball, "f", 0.0, 1.0),
+        (Wall, "b", 0.0, 1e9),
+        (Wall, "kick_threshold", 0.0, 1e9),
+        (Bumper, "radius", 1e-9, 1e9),
+        (Paddle, "max_speed", 1e-9, 1e9),
+        (Scene, "max_speed", 1e-9, 1e9),
+    ],
+    ids=name,
+)
+def test_a_range_ends_where_it_says(spec, field, low, high):
+    for value in (low, high):
+        assert getattr(spec(**{**GOOD[spec], field: value}), field) == value
+    for value in (math.nextafter(low, -math.inf), math.nextafter(high, math.inf)):
+        [(refused, _, _)] = refusals(spec, **{**GOOD[spec], field: value})
+        assert refused == field
+
+
+@pytest.mark.parametrize(
+    "one", [1, 1.0, np.float64(1), np.float32(1), np.int64(1), np.uint8(1), Fraction(1)], ids=name
+)
+def test_takes_any_real_number_and_keeps_a_float(one):
+    wall = Wall((0, 0), (one, one), b=one)
+    assert (type(wall.b), wall.b) == (float, 1.0)
+    assert (wall.end, set(map(type, wall.end))) == ((1.0, 1.0), {float})
+
+
+@pytest.mark.parametrize("pair", [(1, 2), [1, 2], np.array([1, 2]), np.array([1, 2], "f4")], ids=name)
+def test_takes_any_pair_and_keeps_a_tuple_of_floats(pair):
+    center = Bumper(pair, 1).center
+    assert (center, type(center), set(map(type, center))) == ((1.0, 2.0), tuple, {float})
+
+
+def test_minus_zero_becomes_zero():
+    assert math.copysign(1.0, Wall((-0.0, 0.0), (1.0, 0.0)).start[0]) == 1.0
+    assert math.copysign(1.0, Wall((0.0, 0.0), (1.0, 0.0), b=-0.0).b) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("spec", "given", "missing"),
+    [
+        (Wall, {"start": (0, 0)}, [("end", POINT)]),
+        (Bumper, {}, [("center", POINT), ("radius", POSITIVE)]),
+        (
+            Paddle,
+            {"rail_start": (0, 0)},
+            [
+                ("rail_end", POINT),
+                ("half_width", ZERO_OR_POSITIVE),
+                ("radius", POSITIVE),
+                ("max_speed", POSITIVE),
+            ],
+        ),
+        (Sensor, {}, [("start", POINT), ("end", POINT)]),
+    ],
+    ids=name,
+)
+def test_a_missing_field_says_what_it_takes(spec, given, missing):
+    expected = {(field, None, message.replace("must be", "required:")) for field, message in missing}
+    assert set(refusals(spec, **given)) == expected
+
+
+@pytest.mark.parametrize(
+    ("spec", "field", "allowed"),
+    [
+        (Ball, "mass", "radius, b, f"),
+        (Wall, "one_way", "start, end, b, f, kick, kick_threshold, name"),
+        (Wall, "draggable", "start, end, b, f, kick, kick_threshold, name"),
+        (Bumper, "cooldown", "center, radius, b, f, kick, kick_threshold, name"),
+        (
+            Paddle,
+            "width",
+            "rail_start, rail_end, half_width, radius, max_speed, b, f, kick, kick_threshold, name",
+        ),
+        (Sensor, "center", "start, end, drain, name"),
+        (Sensor, "b", "start, end, drain, name"),
+        (Scene, "walls", "gravity, ball, rest_speed, max_speed, elements"),
+    ],
+    ids=name,
+)
+def test_an_unknown_field_says_which_there_are(spec, field, allowed):
+    [(refused, given, message)] = refusals(spec, **GOOD[spec], **{field: 7})
+    assert (refused, given) == (field, 7)
+    head, _, fields = message.partition(": must be one of ")
+    assert head == "unknown field"
+    assert sorted(fields.split(", ")) == sorted(allowed.split(", "))
+
+
+def test_positional_fields_are_named_in_errors():
+    assert refusals(Wall, (0, 0), (1, "x")) == [("end", (1, "x"), POINT)]
+    assert refusals(Bumper, (0, 0), -1) == [("radius", -1, POSITIVE)]
+
+
+@pytest.mark.parametrize(
+    ("spec", "start", "end"),
+    [(Wall, "start", "end"), (Sensor, "start", "end"), (Paddle, "rail_start", "rail_end")],
+    ids=name,
+)
+@pytest.mark.parametrize("point", [(1, 1), (1, 1 + 5e-10)], ids=name)
+def test_two_ends_are_two_points(spec, start, end, point):
+    message = f"must be at least 1e-09 m away from {start} = [1.0, 1.0]"
+    assert refusals(spec, **{**GOOD[spec], start: (1, 1), end: point}) == [(end, point, message)]
+
+
+@pytest.mark.parametrize("value", [1, 0, "true", None, np.True_], ids=name)
+def test_a_flag_is_true_or_false(value):
+    assert refusals(Sensor, **SEGMENT, drain=value) == [("drain", value, "must be true or false")]
+
+
+@pytest.mark.parametrize("value", [3, None, True, b"a", "a\nb", "a\x00", "\x7f", "\ud800"], ids=name)
+def test_a_name_is_printable_text(value):
+    assert refusals(Wall, **SEGMENT, name=value) == [("name", value, "must be printable text")]
+
+
+def test_a_scene_takes_specs_only():
+    allowed = "must be a Wall, Bumper, Paddle or Sensor"
+    ball = Ball()
+    assert refusals(Scene, elements=[Wall(**SEGMENT), 3, ball]) == [
+        ("elements.1", 3, allowed),
+        ("elements.2", ball, allowed),
+    ]
+    assert refusals(Scene, ball={"radius": 1}) == [("ball", {"radius": 1}, "must be a Ball")]
+    for elements in ({Wall(**SEGMENT)}, Wall(**SEGMENT), None, "wall", iter([])):
+        message = "must be a tuple or list of Wall, Bumper, Paddle and Sensor"
+        assert refusals(Scene, elements=elements) == [("elements", elements, message)]
+
+
+def test_all_errors_are_reported_together():
+    fields = [
+        field for field, *_ in refusals(Paddle, (0, 0), half_width=-1, radius=True, b="1", colour="red")
+    ]
+    assert sorted(fields) == ["b", "colour", "half_width", "max_speed", "radius", "rail_end"]
+
+
+def test_signatures_are_those_of_the_design():
+    assert Ball(0.5, 2.0, 0.5) == Ball(radius=0.5, b=2.0, f=0.5)
+    assert Wall((0, 0), (1, 1)) == Wall(
+        start=(0, 0), end=(1, 1), b=1.0, f=1.0, kick=0.0, kick_threshold=0.0, name=""
+    )
+    assert Bumper((0, 0), 2) == Bumper(center=(0, 0), radius=2.0)
+    assert Sensor((0, 0), (1, 1)) == Sensor(start=(0, 0), end=(1, 1), drain=False, name="")
+    assert Scene() == Scene(gravity=(0.0, -9.81), ball=Ball(0.0), rest_speed=0.0, max_speed=None, elements=())
+    for too_many in (
+        lambda: Wall((0, 0), (1, 1), 1.0),
+        lambda: Bumper((0, 0), 1, 1.0),
+        lambda: Paddle((0, 0), (1, 1), 1.0, half_width=0, radius=1, max_speed=1),
+        lambda: Sensor((0, 0), (1, 1), True),
+        lambda: Scene((0, 0)),
+    ):
+        with pytest.raises(ValueError, match="Unexpected positional argument"):
+            too_many()
+
+
+def test_specs_are_frozen_values():
+    scene = Scene(elements=[Wall(**SEGMENT, name="a"), Sensor(**SEGMENT)])
+    for copied in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene), dataclasses.replace(scene)):
+        assert copied == scene
+        assert hash(copied) == hash(scene)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        scene.gravity = (0.0, 0.0)
+    with pytest.raises(ValueError, match="must be a number >= 0"):
+        dataclasses.replace(scene.elements[0], b=-1.0)
+    assert scene != dataclasses.replace(scene, elements=scene.elements[::-1])
+
+
+@pytest.mark.parametrize(
+    ("element", "box"),
+    [
+        (Wall((3, -1), (1, 2)), (1, -1, 3, 2)),
+        (Sensor((3, -1), (1, 2)), (1, -1, 3, 2)),
+        (Bumper((1, 2), 0.5), (0.5, 1.5, 1.5, 2.5)),
+        # a rail along (3, 4) / 5: the core reaches 0.5 further at each stop, and 0.25 more all around
+        (Paddle((3, 4), (0, 0), half_width=0.5, radius=0.25, max_speed=1), (-0.55, -0.65, 3.55, 4.65)),
+        (Paddle((0, 1), (2, 1), half_width=0, radius=1, max_speed=1), (-1, 0, 3, 2)),
+    ],
+    ids=name,
+)
+def test_bounds_of_an_element(element, box):
+    assert element.bounds == pytest.approx(box, abs=1e-15)
+
+
+def test_bounds_of_a_scene():
+    assert Scene(elements=[Wall((0, 0), (1, 0)), Bumper((5, 5), 2)]).bounds == (0, 0, 7, 7)
+    assert Scene(elements=[Wall((3, 4), (5, 6))]).bounds == (3, 4, 5, 6)
+    assert Scene().bounds == (0, 0, 0, 0)

@@ -98,7 +98,7 @@ class BounceEnv(gym.Env[Observation, Any]):
         info = self._info()
         if ended:
             self._running = False
-            info |= self._batch.end_info(0)
+            info |= {key: _plain(value[0]) for key, value in self._batch.end_info(np.ones(1, np.bool_)).items()}
         if self.render_mode == "human":
             self.render()
         r = self._batch.results
@@ -128,6 +128,10 @@ class BounceEnv(gym.Env[Observation, Any]):
 
     def _info(self) -> dict[str, Any]:
         return {"score": float(self._batch.episodes[0].score), "ball": 0}
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
 
 
 class PaddleEnv(BounceEnv):

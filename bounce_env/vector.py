@@ -168,18 +168,24 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
     def _tell_ends(self, info: dict[str, Any], ended: Flags) -> None:
         """Add what is said at an episode's end, as Gymnasium's own vector envs do: arrays with masks."""
         told: dict[str, Any] = {}
-        for w in np.flatnonzero(ended).tolist():
-            told = self._add_info(told, self._batch.end_info(w), w)
+        for key, values in self._batch.end_info(ended).items():
+            whole = (
+                np.full(self.num_envs, None, object)
+                if values.dtype == object
+                else np.zeros(self.num_envs, values.dtype)
+            )
+            whole[ended] = values
+            told[key], told[f"_{key}"] = whole, ended
         if self._mode != AutoresetMode.SAME_STEP:
             info.update(told)
             return
         r = self._batch.results
-        final = {"score": np.where(ended, r.ended["score"], 0.0), "_score": ended.copy()}
-        final |= {"ball": np.zeros(self.num_envs, np.int64), "_ball": ended.copy()}
-        observations = np.full(self.num_envs, None, dtype=object)
+        told |= {"score": np.where(ended, r.ended["score"], 0.0), "_score": ended}
+        told |= {"ball": np.zeros(self.num_envs, np.int64), "_ball": ended}
+        observations = np.full(self.num_envs, None, object)
         for w in np.flatnonzero(ended).tolist():
             observations[w] = r.final_observations[w].copy()
-        info.update(final_obs=observations, _final_obs=ended.copy(), final_info=final | told, _final_info=ended.copy())
+        info.update(final_obs=observations, _final_obs=ended, final_info=told, _final_info=ended)
 
 
 def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:

@@ -52,10 +52,11 @@ BALL = record(
     hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
     end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene
     sensor_after="f8", sensor_index="i8",
-    zone_after="f8", in_zone="i8",  # when it enters, and whether it is in, the zone that a part can reach
+    zone_after="f8",  # duration to the next entry into or exit from a zone that a part can reach
     part_hi="f8", part_lo="f8", part_index="i8",  # next hit of a moving part, as far as its velocity is known
     status="i8",
 )  # fmt: skip
+ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
 PADDLE = record(
     offset="f8", velocity="f8", hi="f8", lo="f8",  # along the rail, at the instant of the last command or stop
     command="f8",  # [m/s] as asked for; `velocity` is 0 where a stop holds the paddle against it
@@ -94,6 +95,7 @@ class State(NamedTuple):
     worlds: Array
     balls: Array  # (worlds, balls)
     paddles: Array | None  # (worlds, paddles)
+    zones: Array | None  # (worlds, balls, paddles)
     face_sides: Array | None  # (worlds, balls, faces) int8; only for a ball of no radius
     sensor_sides: Array | None  # (worlds, balls, sensors) int8
     hits: Array  # (worlds, elements) int64: how often each was struck or crossed in the last step
@@ -109,6 +111,7 @@ def new_state(tables: Tables, worlds: int, balls: int, point: bool) -> State:
         worlds=np.zeros(worlds, WORLD),
         balls=np.zeros((worlds, balls), BALL),
         paddles=None if tables.rails is None else np.zeros((worlds, tables.rails.shape[1]), PADDLE),
+        zones=None if tables.rails is None else np.zeros((worlds, balls, tables.rails.shape[1]), ZONE),
         face_sides=sides(tables.faces) if point else None,
         sensor_sides=sides(tables.sensors),
         hits=np.zeros((worlds, tables.elements.shape[1]), np.int64),
@@ -122,6 +125,7 @@ def borrow_state(state: State) -> State:
         borrow(state.worlds),
         borrow(state.balls),
         borrow(state.paddles),
+        borrow(state.zones),
         borrow(state.face_sides),
         borrow(state.sensor_sides),
         borrow(state.hits),

@@ -22,7 +22,7 @@ from bounce_env.engine.layout import (
     Tables,
 )
 from bounce_env.engine.resolve import arrive, bounce_from_all, count_hit, face_sensors, snap
-from bounce_env.engine.search import plan_flight, plan_parts, plan_sensor, rail_offset
+from bounce_env.engine.search import plan_flight, plan_parts, plan_sensor, plan_zones, rail_offset
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT
 
 # How a run of the loop ends.
@@ -91,7 +91,10 @@ def _ball_event(state: State, tables: Tables, w: int, k: int, ledger: Table) -> 
     """Process the ball's next event; returns how many events it counts for in the budget."""
     ball = state.balls[w, k]
     if ball.next_kind == NEXT_ZONE:
-        ball.zone_after, ball.in_zone = math.inf, 1
+        scene = state.worlds[w].scene
+        gx, gy = pull(tables.gravity, scene)
+        count = tables.scenes[scene].paddles
+        plan_zones(ball, state.zones, tables.rails, count, w, k, scene, gx, gy, ball.zone_after)
         plan_parts(state, tables, w, k)
         return 0
     if ball.next_kind == NEXT_SENSOR:
@@ -143,7 +146,7 @@ def _cross(state: State, tables: Tables, w: int, k: int, sensors: Table, sides: 
     if sensor.drain:
         _fly(ball, gx, gy, after, ball.next_hi, ball.next_lo)
         ball.status = OUT
-        ball.in_zone, ball.next_hi, ball.next_lo = 0, math.inf, 0.0
+        ball.next_hi, ball.next_lo = math.inf, 0.0
     else:
         plan_sensor(state, tables, w, k, after, index)
 
@@ -166,7 +169,7 @@ def _log_crossing(
 @function
 def _part_stops(state: State, tables: Tables, w: int, m: int, ledger: Table) -> None:
     _paddle_stops(state.paddles, tables.rails, state.worlds[w], w, m, ledger)
-    replan_parts(state, tables, w)
+    replan_paddle(state, tables, state.zones, w, m)
 
 
 @function
@@ -190,10 +193,12 @@ def _paddle_stops(paddles: Table, rails: Table, world: Record, w: int, m: int, l
 
 
 @function
-def replan_parts(state: State, tables: Tables, w: int) -> None:
-    """Search the parts anew for every ball that they can reach: some part has changed its speed."""
+def replan_paddle(state: State, tables: Tables, zones: Table, w: int, m: int) -> None:
+    """Search anew for every ball that paddle `m` can reach: it has changed its speed."""
+    if zones is None:
+        return
     for k in range(state.balls.shape[1]):
-        if state.balls[w, k].in_zone:
+        if zones[w, k, m].inside and state.balls[w, k].status != OUT:
             plan_parts(state, tables, w, k)
 
 
@@ -210,7 +215,7 @@ def command(state: State, tables: Tables, paddles: Table, rails: Table, w: int, 
     paddle.hi, paddle.lo = world.time_hi, world.time_lo
     paddle.command = velocity
     set_off(paddle, rail)
-    replan_parts(state, tables, w)
+    replan_paddle(state, tables, state.zones, w, m)
 
 
 @function

@@ -119,27 +119,56 @@ def next_sensor(
 
 
 @function
-def zone_entry(ball: Record, rails: Table, count: int, scene: int, gx: Feature, gy: Feature) -> float:
-    """When the flight enters the strip along a rail outside which its paddle cannot be met; inf if not before the hit.
-
-    The strip is a static sensor of the engine's own: it neither re-bases the flight nor shows in the ledger.
-    """
+def zone_change(height: float, rate: float, pull: Feature, border: float, inside: bool, after: float) -> float:
+    """When |height + rate t + pull t^2 / 2| next passes `border`, from the flight's start, no earlier than `after`."""
     best = math.inf
-    if rails is None:
-        return best
+    for facing in (1.0, -1.0):
+        gap = facing * height - border
+        if inside:
+            t = falling_time(-gap, gap > 0.0, -facing * rate, dot(pull, 0.0, -facing, 0.0))
+        else:
+            t = falling_time(gap, gap < 0.0, facing * rate, dot(pull, 0.0, facing, 0.0))
+        if t >= after:
+            best = min(best, t)
+    return best
+
+
+@function
+def plan_zones(
+    ball: Record,
+    zones: Table,
+    rails: Table,
+    count: int,
+    w: int,
+    k: int,
+    scene: int,
+    gx: Feature,
+    gy: Feature,
+    now: float,
+) -> None:
+    """Bring the ball's zones up to `now` seconds into its flight, and set when the next of them changes.
+
+    The zone of a paddle is the strip along its rail outside which it cannot be met. It is a static sensor of the
+    engine's own: passing its border neither re-bases the flight nor shows in the ledger.
+    """
+    ball.zone_after = math.inf
+    if rails is None or zones is None:
+        return
     for m in range(count):
-        rail = rails[scene, m]
-        nx, ny = -rail.uy, rail.ux
-        height = (ball.x - rail.x) * nx + (ball.y - rail.y) * ny
-        if height < 0.0:
-            nx, ny, height = -nx, -ny, -height
-        # The margin keeps rounding of the entry from hiding a hit on the strip's border.
-        gap = height - 1.01 * rail.reach
-        if gap <= 0.0:
-            return 0.0
-        rate = ball.vx * nx + ball.vy * ny
-        best = min(best, falling_time(gap, False, rate, dot(gx, gy, nx, ny)))
-    return best if best <= ball.end_after else math.inf
+        rail, zone = rails[scene, m], zones[w, k, m]
+        height = (ball.y - rail.y) * rail.ux - (ball.x - rail.x) * rail.uy
+        # The margin keeps rounding of the border from hiding a hit.
+        border = 1.01 * rail.reach
+        if now == 0.0:
+            zone.inside, zone.after = 1 if abs(height) <= border else 0, 0.0
+        elif zone.after <= now:
+            zone.inside = 1 - zone.inside
+        if zone.after <= now:
+            rate = ball.vy * rail.ux - ball.vx * rail.uy
+            zone.after = zone_change(height, rate, dot(gx, gy, -rail.uy, rail.ux), border, zone.inside == 1, now)
+            if zone.after > ball.end_after:
+                zone.after = math.inf
+        ball.zone_after = min(ball.zone_after, zone.after)
 
 
 @function
@@ -178,24 +207,36 @@ def meet_paddle(
 
 @function
 def plan_parts(state: State, tables: Tables, w: int, k: int) -> None:
-    """Search the parts for a ball that is where they can reach, and set its next event."""
-    ball, world = state.balls[w, k], state.worlds[w]
-    ball.part_hi, ball.part_lo, ball.part_index = math.inf, 0.0, -1
-    if ball.in_zone:
-        _plan_paddles(ball, tables.rails, state.paddles, w, world.scene, tables)
+    """Search the parts in whose zone a ball is, and set its next event."""
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head = tables.scenes[scene]
+    gx, gy = pull(tables.gravity, scene)
+    _plan_paddles(ball, tables.rails, state.paddles, state.zones, w, k, scene, head.paddles, head.extent, gx, gy)
     schedule(ball)
 
 
 @function
-def _plan_paddles(ball: Record, rails: Table, paddles: Table, w: int, scene: int, tables: Tables) -> None:
-    if rails is None:
+def _plan_paddles(
+    ball: Record,
+    rails: Table,
+    paddles: Table,
+    zones: Table,
+    w: int,
+    k: int,
+    scene: int,
+    count: int,
+    extent: float,
+    gx: Feature,
+    gy: Feature,
+) -> None:
+    ball.part_hi, ball.part_lo, ball.part_index = math.inf, 0.0, -1
+    if rails is None or paddles is None or zones is None:
         return
-    gx, gy = pull(tables.gravity, scene)
-    head = tables.scenes[scene]
-    for m in range(head.paddles):
-        hi, lo = meet_paddle(ball, paddles[w, m], rails[scene, m], head.extent, gx, gy)
-        if before(hi, lo, ball.part_hi, ball.part_lo):
-            ball.part_hi, ball.part_lo, ball.part_index = hi, lo, m
+    for m in range(count):
+        if zones[w, k, m].inside:
+            hi, lo = meet_paddle(ball, paddles[w, m], rails[scene, m], extent, gx, gy)
+            if before(hi, lo, ball.part_hi, ball.part_lo):
+                ball.part_hi, ball.part_lo, ball.part_index = hi, lo, m
 
 
 @function
@@ -224,13 +265,11 @@ def plan_flight(state: State, tables: Tables, w: int, k: int) -> None:
         ball.hit_kind, ball.hit_index = ON_CIRCLE, circle
     ball.end_after = after
     ball.hit_after = after if face >= 0 or circle >= 0 else math.inf
-    ball.zone_after = zone_entry(ball, tables.rails, head.paddles, scene, gx, gy)
-    ball.in_zone = 1 if ball.zone_after == 0.0 else 0
-    ball.part_hi, ball.part_lo, ball.part_index = math.inf, 0.0, -1
-    plan_sensor(state, tables, w, k, -1.0, -1)
-    if ball.in_zone:
-        ball.zone_after = math.inf
-        plan_parts(state, tables, w, k)
+    ball.sensor_after, ball.sensor_index = next_sensor(
+        ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene, gx, gy, -1.0, -1
+    )
+    plan_zones(ball, state.zones, tables.rails, head.paddles, w, k, scene, gx, gy, 0.0)
+    plan_parts(state, tables, w, k)
 
 
 @function

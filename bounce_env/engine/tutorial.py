@@ -24,7 +24,8 @@ Where the text is silent:
   wall's line it keeps the side from which it came (`State.sides`). A wall is hit only by a movement that goes
   towards it, as seen from that side, by more than the rounding of its speed; after a bounce none does, until
   another wall or gravity turns it. So rounding neither hits a wall twice nor pushes the point through it.
-- A point that starts on a wall is on the side to which it moves: it leaves.
+- A point that starts on a wall is on the side to which it moves, so it leaves; if it does not move to either,
+  on the side from which gravity presses it.
 - Equally close walls: the first of the scene. The others are then found by the recheck, at distance zero.
 - There is no resting contact: under gravity a point on a floor with b = 0 hits it every tick, and every hit
   takes its f ("tar or glue").
@@ -33,6 +34,7 @@ Where the text is silent:
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
@@ -96,7 +98,7 @@ class State(NamedTuple):
     velocity: Pair
     """[m/s]"""
     sides: tuple[int, ...]
-    """For each wall the side of its line: +1 where its normal (lx, ly) points, -1 the other, 0 unknown."""
+    """For each wall the side of its line: +1 where its normal (lx, ly) points, -1 the other."""
 
 
 def bounce(v1: Vector, v2: Vector) -> Pair:
@@ -130,7 +132,7 @@ def start(scene: Scene, position: Pair, velocity: Pair) -> State:
             raise ValueError(f"{name}: {pair} is not allowed, both numbers must be finite")
     p0 = (float(position[0]), float(position[1]))
     velocity = (float(velocity[0]), float(velocity[1]))
-    return State(p0, velocity, _sides(walls, p0, velocity, (0,) * len(walls)))
+    return State(p0, velocity, _sides(walls, p0, (_leaning(v2, velocity, scene.gravity) for v2 in walls)))
 
 
 def step(scene: Scene, state: State, dt: float, recheck: bool = True) -> State:
@@ -164,7 +166,7 @@ def _tick(scene: Scene, walls: list[Vector], state: State, dt: float, recheck: b
     for bounces in range(MAX_BOUNCES):
         if bounces and not recheck:
             break
-        sides = _sides(walls, v1.p0, (v1.vx, v1.vy), sides)
+        sides = _sides(walls, v1.p0, sides)
         closest = _closest(walls, sides, v1, left)
         if closest is None:
             break
@@ -201,17 +203,22 @@ def _closest(walls: list[Vector], sides: tuple[int, ...], v1: Vector, left: floa
     return closest
 
 
-def _sides(walls: list[Vector], p0: Pair, movement: Pair, before: tuple[int, ...]) -> tuple[int, ...]:
+def _sides(walls: list[Vector], p0: Pair, before: Iterable[int]) -> tuple[int, ...]:
     """On which side of each wall's line `p0` is; within rounding of the line, the side `before`."""
-    return tuple(_side(v2, p0, movement, side) for v2, side in zip(walls, before, strict=True))
+    return tuple(_side(v2, p0, side) for v2, side in zip(walls, before, strict=True))
 
 
-def _side(v2: Vector, p0: Pair, movement: Pair, before: int) -> int:
+def _side(v2: Vector, p0: Pair, before: int) -> int:
     distance = _distance(v2, p0)
-    if abs(distance) > _tolerance(v2, p0):
-        return 1 if distance > 0 else -1
-    away = movement[0] * v2.lx + movement[1] * v2.ly
-    return before or (away > 0) - (away < 0)
+    if abs(distance) <= _tolerance(v2, p0):
+        return before
+    return 1 if distance > 0 else -1
+
+
+def _leaning(v2: Vector, velocity: Pair, gravity: Pair) -> int:
+    """The side of a wall to which a point on it moves, or from which gravity presses it if it does not."""
+    lean = velocity[0] * v2.lx + velocity[1] * v2.ly or -(gravity[0] * v2.lx + gravity[1] * v2.ly)
+    return 1 if lean >= 0 else -1
 
 
 def _distance(v2: Vector, p: Pair) -> float:

@@ -15,6 +15,8 @@ from bounce_env.scene import Scene
 
 Mask = npt.NDArray[np.bool_]
 
+_END_REASONS = np.array(END_REASONS, dtype=object)
+
 
 class Game(Protocol):
     """What a batch needs of a game."""
@@ -101,17 +103,16 @@ class Batch:
             raise ValueError(f"actions = {actions!r}: must be finite")
         return np.clip(actions.reshape(self.worlds).astype(np.float64), -1.0, 1.0)
 
-    def end_info(self, world: int) -> dict[str, Any]:
-        """What is said of the episode that ended in the last step of `world`: flat scalars."""
-        books = self.results.ended[world]
-        bounces, capped = self.results.ended_worlds[world]
+    def end_info(self, worlds: Mask) -> dict[str, Array]:
+        """What is said of the episodes that ended in the last step, in the `worlds` of a mask: one entry per world."""
+        books = self.results.ended[worlds]
         return {
-            "end_reason": END_REASONS[books.end],
-            "points_bumpers": float(books.score),
-            "bounces": int(bounces),
-            "touches": int(books.touches),
-            "speed_capped": int(capped),
-            "game_seconds": float(books.frames / FPS),
+            "end_reason": _END_REASONS[books["end"]],
+            "points_bumpers": books["score"],
+            "bounces": books["bounces"],
+            "touches": books["touches"],
+            "speed_capped": books["speed_capped"],
+            "game_seconds": books["frames"] / FPS,
         }
 
     def view(self, world: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

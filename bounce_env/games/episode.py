@@ -21,6 +21,8 @@ EPISODE = record(
     end="i8",  # how the episode has ended
 )  # fmt: skip
 
+BOOKS = record(frames="i8", score="f8", touches="i8", end="i8", bounces="i8", speed_capped="i8")
+
 # How an episode ends; END_REASONS names them in info["end_reason"].
 RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET = 0, 1, 2, 3
 END_REASONS = ("", "drained", "time_limit", "budget")
@@ -42,8 +44,7 @@ class Results(NamedTuple):
     terminated: Array  # (worlds,) bool
     truncated: Array  # (worlds,) bool
     final_observations: Array  # (worlds, size) float32: of episodes that ended in this step, when reset in the same
-    ended: Array  # (worlds,) EPISODE: the books of the episodes that ended in this step
-    ended_worlds: Array  # (worlds, 2) int64: their bounces and capped bounces
+    ended: Array  # (worlds,) BOOKS of the episodes that ended in this step
 
 
 def new_results(worlds: int, size: int) -> Results:
@@ -54,8 +55,7 @@ def new_results(worlds: int, size: int) -> Results:
         terminated=np.zeros(worlds, np.bool_),
         truncated=np.zeros(worlds, np.bool_),
         final_observations=np.zeros((worlds, size), np.float32),
-        ended=np.zeros(worlds, EPISODE),
-        ended_worlds=np.zeros((worlds, 2), np.int64),
+        ended=np.zeros(worlds, BOOKS),
     )
 
 
@@ -69,7 +69,6 @@ def borrow_results(results: Results) -> Results:
         borrow(results.truncated),
         borrow(results.final_observations),
         borrow(results.ended),
-        borrow(results.ended_worlds),
     )
 
 
@@ -86,7 +85,5 @@ def begin_episode(episode: Record) -> None:
 def close_books(results: Results, episode: Record, world: Record, w: int) -> None:
     """Note how the episode of world `w` ended, before anything of it is reset."""
     ended = results.ended[w]
-    ended.world_seed, ended.episodes, ended.seed = episode.world_seed, episode.episodes, episode.seed
-    ended.frames, ended.score, ended.touches = episode.frames, episode.score, episode.touches
-    ended.last_action, ended.end = episode.last_action, episode.end
-    results.ended_worlds[w, 0], results.ended_worlds[w, 1] = world.bounces, world.speed_capped
+    ended.frames, ended.score, ended.touches, ended.end = episode.frames, episode.score, episode.touches, episode.end
+    ended.bounces, ended.speed_capped = world.bounces, world.speed_capped

@@ -9,10 +9,11 @@ import numpy as np
 from pydantic import ConfigDict, Field, InstanceOf, StrictInt
 from pydantic.dataclasses import dataclass
 
-from bounce_env.engine.jit import borrow, function, kernel
+from bounce_env.engine.jit import Table, borrow, function, kernel
 from bounce_env.engine.layout import OUT, Array, State, Tables, borrow_state, borrow_tables, record
 from bounce_env.engine.loop import DONE, clear_hits, command, place, restart, resume, run
-from bounce_env.engine.pack import pack
+from bounce_env.engine.pack import direction, pack
+from bounce_env.engine.search import rail_offset
 from bounce_env.engine.trig import sin_cos
 from bounce_env.engine.view import ball_now
 from bounce_env.games.episode import (
@@ -45,6 +46,7 @@ OBSERVATION_SIZE = 5
 
 FIELD = record(
     x="f8", width="f8", y="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
+    x_scale="f8", y_scale="f8", rail_scale="f8",  # [1/m] from metres to the observation
     paddle="i8",  # its element
 )  # fmt: skip
 
@@ -118,7 +120,10 @@ def new_rules(scenes: tuple[Scene, ...], options: "PaddleOptions") -> Rules:
     for s, scene in enumerate(scenes):
         x, y, width, height = field_of(scene)
         paddle = next(i for i, e in enumerate(scene.elements) if isinstance(e, Paddle))
-        fields[s] = (x, width, y, height, paddle)
+        rail = scene.elements[paddle]
+        assert isinstance(rail, Paddle)
+        span = direction(rail.rail_start, rail.rail_end)[2]
+        fields[s] = (x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, paddle)
         points[s, : len(scene.elements)] = [POINTS * isinstance(e, Bumper) for e in scene.elements]
     limit = math.inf if options.time_limit is None else float(round(options.time_limit * FPS))
     repeat = options.repeat_action_probability
@@ -140,23 +145,22 @@ def observe(state: State, tables: Tables, rules: Rules, episodes: Array, w: int,
     scene = state.worlds[w].scene
     field = rules.fields[scene]
     x, y, vx, vy = ball_now(state, tables, w, 0)
-    out[w, 0] = 2.0 * (x - field.x) / field.width - 1.0
-    out[w, 1] = 2.0 * (y - field.y) / field.height - 1.0
-    out[w, 2] = vx / REFERENCE_SPEED
-    out[w, 3] = vy / REFERENCE_SPEED
-    out[w, 4] = 2.0 * paddle_place(state, state.paddles, tables.rails, w, scene) - 1.0
+    out[w, 0] = (x - field.x) * field.x_scale - 1.0
+    out[w, 1] = (y - field.y) * field.y_scale - 1.0
+    out[w, 2] = vx * (1.0 / REFERENCE_SPEED)
+    out[w, 3] = vy * (1.0 / REFERENCE_SPEED)
+    # The product may exceed the ends of the range by its rounding.
+    out[w, 4] = min(max(paddle_offset(state, state.paddles, w) * field.rail_scale - 1.0, -1.0), 1.0)
     if out.shape[1] > OBSERVATION_SIZE:
         out[w, OBSERVATION_SIZE] = episodes[w].last_action
 
 
 @function
-def paddle_place(state: State, paddles: Any, rails: Any, w: int, scene: int) -> float:
-    """Where the paddle is on its rail, from 0 to 1."""
-    if paddles is None or rails is None:
+def paddle_offset(state: State, paddles: Table, w: int) -> float:
+    """Where the paddle is on its rail now [m]."""
+    if paddles is None:
         return 0.0
-    world, paddle = state.worlds[w], paddles[w, 0]
-    offset = paddle.offset + paddle.velocity * ((world.time_hi - paddle.hi) + (world.time_lo - paddle.lo))
-    return min(max(offset / rails[scene, 0].span, 0.0), 1.0)
+    return rail_offset(paddles[w, 0], state.worlds[w].time_hi, state.worlds[w].time_lo)
 
 
 @function

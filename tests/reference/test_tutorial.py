@@ -165,6 +165,15 @@ def test_corner_reverses_the_point():
         assert state.position == pytest.approx((0.9, 0.9), rel=1e-15)
 
 
+def test_point_that_starts_on_a_wall_leaves_it_or_is_pressed_on_it():
+    floor = Wall((-1, 0), (1, 0))
+    assert run(flying(floor), (0.0, 0.0), (0.25, 1.0), 0.5, 1).position == (0.125, 0.5)
+    assert run(flying(floor), (0.0, 0.0), (0.25, -1.0), 0.5, 1).position == (0.125, -0.5)
+    for g in (-2.0, 2.0):
+        y = run(Scene(gravity=(0, g), elements=(floor,)), (0.0, 0.0), (0.0, 0.0), 0.5, 2).position[1]
+        assert y * g < 0  # it has bounced off
+
+
 def test_gravity_is_stepped_velocity_first():
     state = run(Scene(gravity=(0.5, -2.0)), (0.0, 0.0), (1.0, 3.0), 0.25, 8)
     assert state.velocity == (2.0, -1.0)

@@ -13,6 +13,7 @@ from bounce_env.games.episode import DISABLED
 from bounce_env.games.paddle import PaddleGame, PaddleOptions
 from bounce_env.games.start import start_rows
 from bounce_env.render import Picture, Renderer, Window
+from bounce_env.render.projection import Projection
 from bounce_env.scene import Scene
 
 Observation = npt.NDArray[np.float32]
@@ -56,6 +57,7 @@ class BounceEnv(gym.Env[Observation, Any]):
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             allowed = [None, *self.metadata["render_modes"]]
             raise ValueError(f"render_mode = {render_mode!r}: must be one of {allowed}")
+        Projection.fit(game.scenes[0].bounds, width, height)  # a bad size is told now, not at the first frame
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds)}
         self.render_mode = render_mode
         self.observation_space: spaces.Space[Any] = observation_space(game)
@@ -98,7 +100,7 @@ class BounceEnv(gym.Env[Observation, Any]):
         info = self._info()
         if ended:
             self._running = False
-            info |= {key: _plain(value[0]) for key, value in self._batch.end_info(np.ones(1, np.bool_)).items()}
+            info |= {key: _plain(value[0]) for key, value in self._batch.end_info().items()}
         if self.render_mode == "human":
             self.render()
         r = self._batch.results
@@ -109,6 +111,8 @@ class BounceEnv(gym.Env[Observation, Any]):
         if self.render_mode is None:
             gym.logger.warn('render() needs a render mode: gym.make(..., render_mode="rgb_array")')
             return None
+        if not self._seeded:
+            raise gym.error.ResetNeeded("call reset() before render()")
         if self._renderer is None:
             self._renderer = Renderer(self._batch.game.scenes[0], *self._size)
         frame = self._renderer.frame(picture_of(self._batch, 0))

@@ -11,16 +11,24 @@ from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvO
 
 from bounce_env.vector import BounceVectorEnv
 
+# What SB3 calls the spaces of one world.
+_SINGLE = {"observation_space": "single_observation_space", "action_space": "single_action_space"}
+# SB3's rollouts need a reset in the same step and observations of their own.
+_FIXED = ("autoreset_mode", "copy", "num_envs", "vectorization_mode")
+
 
 class BounceVecEnv(VecEnv):
     """`n_envs` worlds of the environment `env_id` for SB3's algorithms.
 
-    env_id: "Bounce/..."; further keyword arguments are those of the environment (its card), and `num_threads`. Info
-    holds what the card says, and at an episode's end the "episode" statistics that SB3's Monitor would add.
-    Raises ValueError for what the environment does not take.
+    env_id: "Bounce/...", or an id of your own with one of its entry points; seed: of the first reset, as `seed()`
+    sets it. Further keyword arguments are those of the environment (its card), and `num_threads`. Info holds what the
+    card says, and at an episode's end the "episode" statistics that SB3's Monitor would add.
+    Raises ValueError for another environment, and as the environment does.
     """
 
     def __init__(self, env_id: str, n_envs: int = 1, *, seed: int | None = None, **kwargs: Any) -> None:
+        for name in sorted(set(_FIXED).intersection(kwargs)):
+            raise ValueError(f"{name} = {kwargs[name]!r}: must be left out, BounceVecEnv sets it")
         envs = gym.make_vec(
             env_id,
             num_envs=n_envs,
@@ -28,20 +36,21 @@ class BounceVecEnv(VecEnv):
             autoreset_mode=AutoresetMode.SAME_STEP.name,
             **kwargs,
         )
-        assert isinstance(envs.unwrapped, BounceVectorEnv)
+        if not isinstance(envs.unwrapped, BounceVectorEnv):
+            raise ValueError(f"env_id = {env_id!r}: must be an environment of bounce_env")
         self._envs: BounceVectorEnv = envs.unwrapped
         self._actions: Any = None
         super().__init__(n_envs, envs.single_observation_space, envs.single_action_space)
-        self.render_mode = envs.render_mode
         self.metadata = envs.metadata
         self.spec = envs.spec
         self._lengths = np.zeros(n_envs, np.int64)
-        self.seed(seed)
+        if seed is not None:
+            self.seed(seed)
 
     def reset(self) -> VecEnvObs:
         """Begin an episode in every world; seeds of `seed()` are used once, then the streams go on."""
         given = any(seed is not None for seed in self._seeds)
-        observations, info = self._envs.reset(seed=self._seeds if given else None, options=self._one_option())
+        observations, info = self._envs.reset(seed=self._seeds if given else None, options=self._option_rows())
         self._lengths[:] = 0
         self.reset_infos = self._rows(info)
         self._reset_seeds()
@@ -77,8 +86,8 @@ class BounceVecEnv(VecEnv):
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
         """An attribute of the environment, once per index."""
-        source = self if attr_name in ("render_mode", "spec", "metadata") else self._envs
-        return [getattr(source, attr_name) for _ in self._get_indices(indices)]
+        value = getattr(self._envs, _SINGLE.get(attr_name, attr_name))
+        return [value for _ in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
         """Not possible for some worlds only: raises NotImplementedError."""
@@ -106,13 +115,12 @@ class BounceVecEnv(VecEnv):
         scores = info["score"].tolist()
         return [{"score": score, "ball": 0} for score in scores]
 
-    def _one_option(self) -> dict[str, Any] | None:
-        given = [options for options in self._options if options]
-        if not given:
-            return None
-        if any(options != self._options[0] for options in self._options):
-            raise ValueError("options: must be the same for every world, pairs may be given one row per world")
-        return given[0]
+    def _option_rows(self) -> dict[str, Any]:
+        """The options of `set_options`, one dict per world, as the batch takes them: one row per world."""
+        names = self._options[0].keys()
+        if any(options.keys() != names for options in self._options):
+            raise ValueError("options: must have the same names in every world")
+        return {name: [options[name] for options in self._options] for name in names}
 
 
 def _plain(value: Any) -> Any:

@@ -17,6 +17,7 @@ from bounce_env.games.batch import Batch, Game
 from bounce_env.games.paddle import PaddleGame, PaddleOptions
 from bounce_env.games.start import start_rows
 from bounce_env.render import Renderer
+from bounce_env.render.projection import Projection
 from bounce_env.scene import Scene
 
 Observations = npt.NDArray[np.float32]
@@ -54,10 +55,13 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         height: int | None,
     ) -> None:
         for name, value in (("num_envs", num_envs), ("num_threads", num_threads)):
-            if not isinstance(value, int | np.integer) or value < 1:
+            if not _whole(value):
                 raise ValueError(f"{name} = {value!r}: must be a whole number >= 1")
+        if not isinstance(copy, bool):
+            raise ValueError(f"copy = {copy!r}: must be True or False")
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode = {render_mode!r}: must be one of {[None, *self.metadata['render_modes']]}")
+        Projection.fit(game.scenes[0].bounds, width, height)  # a bad size is told now, not at the first frame
         mode = _autoreset_mode(autoreset_mode)
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds), "autoreset_mode": mode}
         self.num_envs = int(num_envs)
@@ -119,6 +123,8 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         if self.render_mode is None:
             gym.logger.warn('render() needs a render mode: gym.make_vec(..., render_mode="rgb_array")')
             return None
+        if not self._seeded.all():
+            raise gym.error.ResetNeeded("call reset() before render()")
         if self._renderer is None:
             self._renderer = Renderer(self._batch.game.scenes[0], *self._size)
         return tuple(self._renderer.frame(picture_of(self._batch, w)) for w in range(self.num_envs))
@@ -134,7 +140,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             raise ValueError(f"options['reset_mask'] = {mask!r}: must be a bool array of shape ({self.num_envs},)")
         if not mask.any():
             raise ValueError("options['reset_mask']: must be True for at least one world")
-        return mask
+        return mask.copy()  # it is handed out in info
 
     def _seed_worlds(self, seed: int | Sequence[int | None] | None, mask: Flags) -> None:
         """Seed the worlds of `mask` as the single env would: by their own seed, or once at random."""
@@ -145,12 +151,11 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             seed = [None] * self.num_envs
         if len(seed) != self.num_envs:
             raise ValueError(f"seed: must be one number, or {self.num_envs}, one per world; got {len(seed)}")
-        for w in np.flatnonzero(mask).tolist():
-            own = seed[w]
-            if own is not None:
-                self._batch.seed(w, world_seed(seeding.np_random(own)[0]))
-            elif not self._seeded[w]:
-                self._batch.seed(w, world_seed(self.np_random))
+        # All generators first: a seed that is not allowed raises before any world has changed.
+        generators = {w: seeding.np_random(seed[w])[0] for w in np.flatnonzero(mask).tolist() if seed[w] is not None}
+        generators |= {w: self.np_random for w in np.flatnonzero(mask & ~self._seeded).tolist() if seed[w] is None}
+        for w, generator in generators.items():
+            self._batch.seed(w, world_seed(generator))
         self._seeded |= mask
 
     def _observations(self) -> Observations:
@@ -159,7 +164,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
 
     def _info(self, mask: Flags) -> dict[str, Any]:
         return {
-            "score": self._batch.episodes["score"].copy(),
+            "score": np.where(mask, self._batch.episodes["score"], 0.0),
             "_score": mask,
             "ball": np.zeros(self.num_envs, np.int64),
             "_ball": mask,
@@ -168,24 +173,22 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
     def _tell_ends(self, info: dict[str, Any], ended: Flags) -> None:
         """Add what is said at an episode's end, as Gymnasium's own vector envs do: arrays with masks."""
         told: dict[str, Any] = {}
-        for key, values in self._batch.end_info(ended).items():
-            whole = (
-                np.full(self.num_envs, None, object)
-                if values.dtype == object
-                else np.zeros(self.num_envs, values.dtype)
-            )
-            whole[ended] = values
-            told[key], told[f"_{key}"] = whole, ended
+        for key, values in self._batch.end_info().items():
+            told[key], told[f"_{key}"] = values, ended
         if self._mode != AutoresetMode.SAME_STEP:
             info.update(told)
             return
         r = self._batch.results
-        told |= {"score": np.where(ended, r.ended["score"], 0.0), "_score": ended}
+        told |= {"score": r.ended["score"].copy(), "_score": ended}
         told |= {"ball": np.zeros(self.num_envs, np.int64), "_ball": ended}
         observations = np.full(self.num_envs, None, object)
         for w in np.flatnonzero(ended).tolist():
             observations[w] = r.final_observations[w].copy()
         info.update(final_obs=observations, _final_obs=ended, final_info=told, _final_info=ended)
+
+
+def _whole(value: Any) -> bool:
+    return isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= 1)
 
 
 def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:
@@ -222,8 +225,12 @@ class PaddleVectorEnv(BounceVectorEnv):
             repeat_action_probability=repeat_action_probability,
             time_limit=time_limit,
         )
+        # -1 is `gym.make`'s word for no limit.
+        steps = None if max_episode_steps == -1 else max_episode_steps
+        if steps is not None and not _whole(steps):
+            raise ValueError(f"max_episode_steps = {steps!r}: must be None, -1 or a whole number >= 1")
         super().__init__(
-            PaddleGame(options).with_step_limit(max_episode_steps),
+            PaddleGame(options).with_step_limit(steps),
             num_envs,
             num_threads=num_threads,
             autoreset_mode=autoreset_mode,

@@ -7,7 +7,7 @@ part's position and velocity, and the same functions serve. `reach` is the obsta
 
 import math
 
-from bounce_env.engine.flight import dot, moved, sped
+from bounce_env.engine.flight import dot, highest, lowest, moved, sped
 from bounce_env.engine.jit import Feature, function
 from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
 
@@ -116,17 +116,38 @@ def straight_circle_time(x: float, y: float, vx: float, vy: float, reach: float,
 
 
 @function
+def passing(x: float, v: float, reach: float) -> tuple[float, float]:
+    """The durations between which |x + v t| <= reach, as (from, to) with from >= 0; from > to if never."""
+    if v == 0.0:
+        return 0.0, math.inf if abs(x) <= reach else -1.0
+    if v < 0.0:
+        x, v = -x, -v
+    return max((-reach - x) / v, 0.0), (reach - x) / v
+
+
+@function
 def curved_circle_time(
-    x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, reach: float, slack: float, horizon: float
+    x: float, y: float, vx: float, vy: float, gx: float, gy: float, reach: float, slack: float, horizon: float
 ) -> float:
     """Hit of a circle about the origin under gravity, by bounded-acceleration advancement.
 
     The gap f(t) to a convex obstacle satisfies f'' >= -|g|, so stepping to the first root of f + f' h - |g| h^2 / 2
     cannot step over a hit, and converges quadratically. Just after a bounce f = 0 and f' > 0, and the same step leaves
-    the circle: no ball is pushed off, no circle is skipped.
+    the circle: no ball is pushed off, no circle is skipped. Across gravity along an axis the flight is uniform: the
+    search is confined to the time in which it passes the circle there, and to flights that come near it then.
     """
-    bound = math.sqrt(gx * gx + gy * gy)
     t = 0.0
+    if gx == 0.0:
+        t, end = passing(x, vx, reach + slack)
+        horizon = min(horizon, end)
+        if not near(moved(y, vy, gy, t), sped(vy, gy, t), gy, horizon - t, reach + slack):
+            return math.inf
+    elif gy == 0.0:
+        t, end = passing(y, vy, reach + slack)
+        horizon = min(horizon, end)
+        if not near(moved(x, vx, gx, t), sped(vx, gx, t), gx, horizon - t, reach + slack):
+            return math.inf
+    bound = math.sqrt(gx * gx + gy * gy)
     for _ in range(SEARCH_STEPS):
         px, py = moved(x, vx, gx, t), moved(y, vy, gy, t)
         qx, qy = sped(vx, gx, t), sped(vy, gy, t)
@@ -144,6 +165,12 @@ def curved_circle_time(
         if t > horizon:
             return math.inf
     return t
+
+
+@function
+def near(x: float, v: float, g: float, t: float, reach: float) -> bool:
+    """Whether x + v t + g t^2 / 2 comes within `reach` of 0 in the next `t` seconds; a `t` < 0 is never."""
+    return t >= 0.0 and lowest(x, v, g, t) <= reach and highest(x, v, g, t) >= -reach
 
 
 @function

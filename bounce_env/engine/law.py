@@ -22,8 +22,9 @@ def bounce(
 
     Tutorial, "Real bounce and friction": project on the wall and on its normal, scale by friction and bounciness,
     reverse, add. Unit vectors throughout: the tutorial's printed projections divide by the wall's length once where
-    they must divide twice. `n` points from the element to the ball, `u` is the surface's velocity at the contact point; b and f
-    are the products of ball's and element's. The kick acts when the approach is faster than its threshold.
+    they must divide twice. `n` points from the element to the ball, `u` is the surface's velocity at the contact
+    point; b and f are the products of ball's and element's. The kick acts when the approach is faster than its
+    threshold.
     """
     wx, wy = vx - ux, vy - uy
     normal = wx * nx + wy * ny

@@ -48,6 +48,7 @@ WORLD = record(
 BALL = record(
     x="f8", y="f8", vx="f8", vy="f8", hi="f8", lo="f8",  # the last event: state and instant; the flight starts here
     slack="f8",  # [m] what counts as touching at that instant
+    touched="i8",  # how many elements it touched when it was last resolved
     next_hi="f8", next_lo="f8", next_kind="i8",  # the ball's next event
     hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
     end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene

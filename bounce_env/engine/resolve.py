@@ -121,6 +121,7 @@ def closest_face(
         along = dx * face.ux + dy * face.uy
         if along < -ball.slack or along > face.length + ball.slack:
             continue
+        ball.touched += 1
         facing = float(side_on(sides, w, k, i))
         if facing == 0.0:
             facing = 1.0 if height >= 0.0 else -1.0
@@ -145,6 +146,7 @@ def closest_circle(
         square = dx * dx + dy * dy
         if square > reach * reach:
             continue
+        ball.touched += 1
         distance = math.sqrt(square)
         nx, ny = dx / distance, dy / distance
         closing = -(ball.vx * nx + ball.vy * ny)
@@ -177,6 +179,7 @@ def closest_paddle(
         nx, ny, distance = on_capsule(dx, dy, rail.ux, rail.uy, rail.half_width)
         if distance > rail.reach + ball.slack:
             continue
+        ball.touched += 1
         sx, sy = paddle.velocity * rail.ux, paddle.velocity * rail.uy
         closing = -((ball.vx - sx) * nx + (ball.vy - sy) * ny)
         if closing > best or (closing == best and rail.element < element):
@@ -192,6 +195,7 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
     head = tables.scenes[scene]
     for done in range(BOUNCES_AT_ONE_INSTANT):
         slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
+        ball.touched = 0
         best, element, nx, ny = closest_face(ball, tables.faces, head.faces, state.face_sides, w, k, scene, slow)
         best, element, nx, ny = closest_circle(ball, tables.circles, head.circles, scene, best, element, nx, ny)
         best, element, nx, ny, ux, uy = closest_paddle(
@@ -207,6 +211,8 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
         world.bounces += 1
         count_hit(state, w, element)
         log(ledger, world, ball, k, element, BOUNCE, nx, ny, vx0, vy0, ux, uy)
+        if ball.touched == 1:
+            return done + 1
     return BOUNCES_AT_ONE_INSTANT
 
 

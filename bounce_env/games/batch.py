@@ -1,5 +1,6 @@
 """A batch of worlds that play one game: the one thing that the single env, the vector env and SB3's share."""
 
+import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -8,6 +9,7 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.jit import kernel
 from bounce_env.engine.layout import Array, State, Tables, new_state
 from bounce_env.engine.view import view
 from bounce_env.games.episode import END_REASONS, EPISODE, FPS, Results, new_results
@@ -16,6 +18,15 @@ from bounce_env.scene import Scene
 Mask = npt.NDArray[np.bool_]
 
 _END_REASONS = np.array(END_REASONS, dtype=object)
+
+
+@kernel
+def all_finite(numbers: Array) -> bool:
+    """Whether there is neither NaN nor infinity in (n,) floats."""
+    for number in numbers:  # noqa: SIM110 (a loop is what compiles to one)
+        if not math.isfinite(number):
+            return False
+    return True
 
 
 class Game(Protocol):
@@ -52,7 +63,6 @@ class Batch:
         self.episodes: Array = np.zeros(worlds, EPISODE)
         self.results: Results = new_results(worlds, len(game.observation_high))
         self._start = np.full((worlds, 4), np.nan)
-        self._actions = np.zeros(worlds)
         self._borders = np.linspace(0, worlds, min(num_threads, worlds) + 1).astype(int)
         self._threads: ThreadPoolExecutor | None = None
 
@@ -74,14 +84,16 @@ class Batch:
         """One step of every world; returns how many episodes ended.
 
         actions: (worlds,) whole numbers where `game.discrete_actions`, otherwise (worlds,) or (worlds, 1) floats, which
-        are clipped to [-1, 1]. Raises ValueError, before anything moves, for NaN, infinity, or no such action.
+        are clipped to [-1, 1]; one world takes a plain number, too. Raises ValueError, before anything moves, for
+        another shape or type, NaN, infinity, or no such action.
         """
-        self._actions[:] = self._speeds(np.asarray(actions))
+        speeds = self._checked(np.asarray(actions))
+        if not all_finite(speeds):
+            self._refuse(speeds)
         game = self.game
         step = partial(
             game.step_worlds,
-            self.state, game.tables, game.rules, self.episodes, self._start, self._actions, self.results,
-            self.autoreset,
+            self.state, game.tables, game.rules, self.episodes, self._start, speeds, self.results, self.autoreset,
         )  # fmt: skip
         slices = list(zip(self._borders[:-1].tolist(), self._borders[1:].tolist(), strict=True))
         if len(slices) == 1:
@@ -90,28 +102,34 @@ class Batch:
             self._threads = ThreadPoolExecutor(len(slices))
         return sum(self._threads.map(lambda part: step(*part), slices))
 
-    def _speeds(self, actions: Array) -> Array:
-        if self.game.discrete_actions is not None:
-            if not (np.issubdtype(actions.dtype, np.integer) and actions.shape in ((self.worlds,), ())):
-                raise ValueError(f"actions = {actions!r}: must be {self.worlds} whole numbers, one per world")
-            if (actions < 0).any() or (actions >= self.game.discrete_actions).any():
-                raise ValueError(f"actions = {actions!r}: each must be in 0 to {self.game.discrete_actions - 1}")
-            return self.game.speeds(actions)
-        if actions.size != self.worlds:
-            raise ValueError(f"actions of shape {actions.shape}: must have {self.worlds} numbers, one per world")
-        if not np.isfinite(actions).all():
-            raise ValueError(f"actions = {actions!r}: must be finite")
-        return np.clip(actions.reshape(self.worlds).astype(np.float64), -1.0, 1.0)
+    def _checked(self, actions: Array) -> Array:
+        """The actions as (worlds,) numbers for the kernel, which refuses those that are not finite itself."""
+        discrete = self.game.discrete_actions
+        kinds, what = ("fiu", "numbers") if discrete is None else ("iu", f"whole numbers from 0 to {discrete - 1}")
+        column = discrete is None and actions.shape == (self.worlds, 1)
+        if not (column or actions.shape == (self.worlds,) or (self.worlds == 1 and actions.shape == ())):
+            raise ValueError(f"actions of shape {actions.shape}: must be {self.worlds} {what}, one per world")
+        if actions.dtype.kind not in kinds:
+            raise ValueError(f"actions = {actions!r}: must be {what}")
+        if discrete is None:
+            return actions.reshape(self.worlds).astype(np.float64)
+        if (actions < 0).any() or (actions >= discrete).any():
+            raise ValueError(f"actions = {actions!r}: each must be a whole number from 0 to {discrete - 1}")
+        return self.game.speeds(actions.reshape(self.worlds))
 
-    def end_info(self, worlds: Mask) -> dict[str, Array]:
-        """What is said of the episodes that ended in the last step, in the `worlds` of a mask: one entry per world."""
-        books = self.results.ended[worlds]
+    def _refuse(self, actions: Array) -> None:
+        world = int(np.flatnonzero(~np.isfinite(actions))[0])
+        raise ValueError(f"actions[{world}] = {actions[world]}: must be finite")
+
+    def end_info(self) -> dict[str, Array]:
+        """What is said of the episodes that ended in the last step, (worlds,) each; 0 or None where none did."""
+        books = self.results.ended
         return {
             "end_reason": _END_REASONS[books["end"]],
-            "points_bumpers": books["score"],
-            "bounces": books["bounces"],
-            "touches": books["touches"],
-            "speed_capped": books["speed_capped"],
+            "points_bumpers": books["score"].copy(),
+            "bounces": books["bounces"].copy(),
+            "touches": books["touches"].copy(),
+            "speed_capped": books["speed_capped"].copy(),
             "game_seconds": books["frames"] / FPS,
         }
 

@@ -25,7 +25,7 @@ BOOKS = record(frames="i8", score="f8", touches="i8", end="i8", bounces="i8", sp
 
 # How an episode ends; END_REASONS names them in info["end_reason"].
 RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET = 0, 1, 2, 3
-END_REASONS = ("", "drained", "time_limit", "budget")
+END_REASONS = (None, "drained", "time_limit", "budget")
 
 # Autoreset modes, as in gymnasium.vector.AutoresetMode.
 NEXT_STEP, SAME_STEP, DISABLED = 0, 1, 2
@@ -87,3 +87,11 @@ def close_books(results: Results, episode: Record, world: Record, w: int) -> Non
     ended = results.ended[w]
     ended.frames, ended.score, ended.touches, ended.end = episode.frames, episode.score, episode.touches, episode.end
     ended.bounces, ended.speed_capped = world.bounces, world.speed_capped
+
+
+@function
+def open_books(results: Results, w: int) -> None:
+    """Forget how an episode of world `w` ended."""
+    ended = results.ended[w]
+    ended.frames, ended.score, ended.touches, ended.end = 0, 0.0, 0, RUNNING
+    ended.bounces, ended.speed_capped = 0, 0

@@ -29,6 +29,7 @@ from bounce_env.games.episode import (
     begin_episode,
     borrow_results,
     close_books,
+    open_books,
 )
 from bounce_env.games.streams import LAUNCHES, STICKY_ACTIONS, uniform
 from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall, load_scene
@@ -265,7 +266,7 @@ def step_worlds(
 ) -> int:
     """One step of worlds `first` to `last` - 1, with the autoreset mode's resets; returns how many episodes ended.
 
-    actions: (worlds,) float64 in [-1, 1]. A world whose episode has ended is reset in place of a step (NEXT_STEP), was
+    actions: (worlds,) float64, clipped to [-1, 1]. A world whose episode has ended is reset in place of a step (NEXT_STEP), was
     reset at its end (SAME_STEP), or must have been reset by the caller (DISABLED).
     """
     state, tables, episodes = borrow_state(state), borrow_tables(tables), borrow(episodes)
@@ -278,8 +279,11 @@ def step_worlds(
             results.rewards[w] = 0.0
             results.terminated[w] = False
             results.truncated[w] = False
+            open_books(results, w)
             continue
-        results.rewards[w] = play(state, tables, rules, episodes, w, actions[w])
+        results.rewards[w] = play(state, tables, rules, episodes, w, min(max(actions[w], -1.0), 1.0))
+        if results.ended[w].end != RUNNING:
+            open_books(results, w)
         end = episodes[w].end
         results.terminated[w] = end == DRAINED
         results.truncated[w] = end not in (DRAINED, RUNNING)

@@ -23,9 +23,14 @@ def start_rows(game: Game, worlds: int, options: Mapping[str, Any] | None) -> np
     for name, value in (options or {}).items():
         if name not in ALLOWED:
             raise ValueError(f"options[{name!r}]: must be one of {', '.join(ALLOWED)}")
-        pairs = np.asarray(value, np.float64)
+        try:
+            pairs = np.asarray(value, np.float64)
+        except (TypeError, ValueError):  # not numbers, or of no shape at all
+            pairs = np.empty(0)
         if pairs.shape not in ((2,), (worlds, 2)):
-            raise ValueError(f"options[{name!r}] = {value!r}: must be a pair, or one for each of {worlds} worlds")
+            raise ValueError(
+                f"options[{name!r}] = {value!r}: must be a pair of numbers, or one for each of {worlds} worlds"
+            )
         if not np.isfinite(pairs).all():
             raise ValueError(f"options[{name!r}] = {value!r}: must be finite")
         first = 2 * ALLOWED.index(name)
@@ -39,10 +44,12 @@ def _check(game: Game, row: npt.NDArray[np.float64]) -> None:
     scene = game.scenes[0]
     x, y, vx, vy = row.tolist()
     left, below, right, above = game.field
+    below += scene.ball.radius  # a centre that starts on the drain never crosses it
     if not math.isnan(x):
         if not (left <= x <= right and below <= y <= above):
             raise ValueError(
-                f"options['position'] = ({x}, {y}): must be on the field, x {left} to {right} and y {below} to {above}"
+                f"options['position'] = ({x}, {y}): must be on the field, "
+                f"x {left:g} to {right:g} and y {below:g} to {above:g}"
             )
         row[:2] = cleared(scene, rail_middles(scene), x, y)
     if scene.max_speed is not None and math.hypot(vx, vy) > scene.max_speed:

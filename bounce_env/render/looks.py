@@ -25,6 +25,9 @@ _BALL = (255, 252, 240, 255)
 _SMALLEST_RADIUS = 1.5
 """Pixels: what is smaller in the scene is still drawn as a dot that one can see."""
 
+_MOST_RINGS = 64
+"""A glow has a ring a pixel, so that none can be told apart, but no more than this."""
+
 
 @dataclass(frozen=True)
 class Stroke:
@@ -45,7 +48,7 @@ Look: TypeAlias = tuple[Stroke, ...]
 
 def ball_look(scene: Scene, projection: Projection) -> Look:
     """A ball whose centre is at the pixel coordinates (0, 0)."""
-    radius = max(scene.ball.radius * projection.scale, _SMALLEST_RADIUS)
+    radius = max(scene.ball.radius * projection.scale, _SMALLEST_RADIUS, _pen(projection))
     center = (0.0, 0.0)
     return (*_glow(center, center, radius, 0.8 * radius, _BALL, 70), Stroke(center, center, radius, _BALL))
 
@@ -82,12 +85,20 @@ def still_look(element: Wall | Bumper | Sensor, scene: Scene, projection: Projec
 def _bumper(bumper: Bumper, lively: bool, projection: Projection, *, lit: bool) -> Look:
     center = _pixel(bumper.center, projection)
     radius = max(bumper.radius * projection.scale, _SMALLEST_RADIUS)
-    rim, core = (_LIVELY, _LIVELY_CORE) if lively else (_PASSIVE, _PASSIVE_CORE)
-    if lit:
-        rim, core = (_LIVELY_LIT, _LIVELY_CORE_LIT) if lively else (_PASSIVE_LIT, _PASSIVE)
+    match lively, lit:
+        case True, True:
+            rim, core, reach, peak = _LIVELY_LIT, _LIVELY_CORE_LIT, radius, 170
+        case True, False:
+            rim, core, reach, peak = _LIVELY, _LIVELY_CORE, 0.5 * radius, 70
+        case False, True:
+            rim, core, reach, peak = _PASSIVE_LIT, _PASSIVE, 0.5 * radius, 110
+        case _:
+            rim, core, reach, peak = _PASSIVE, _PASSIVE_CORE, 0.0, 0
     discs = [(radius, rim), (0.78 * radius, core), (0.3 * radius, rim)]
-    look = tuple(Stroke(center, center, size, color) for size, color in discs)
-    return (*_glow(center, center, radius, radius, core, 170), *look) if lit else look
+    return (
+        *_glow(center, center, radius, reach, rim if lively else core, peak),
+        *(Stroke(center, center, size, color) for size, color in discs),
+    )
 
 
 def _wall(wall: Wall, lively: bool, projection: Projection, *, lit: bool) -> Look:
@@ -116,7 +127,7 @@ def _glow(
     start: tuple[float, float], end: tuple[float, float], radius: float, reach: float, color: Color, peak: int
 ) -> Look:
     """Ever smaller and more opaque strokes, from `radius + reach` inwards to `radius`, up to the opacity `peak`."""
-    rings = 12
+    rings = min(max(4, math.ceil(reach)), _MOST_RINGS)
     return tuple(
         Stroke(start, end, radius + reach * (1 - i / rings), (*color[:3], round(peak * ((i + 1) / rings) ** 2)))
         for i in range(rings)

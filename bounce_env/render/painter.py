@@ -1,7 +1,7 @@
 """Strokes to pixels, with pygame's software surfaces. Import it after `load_pygame` only."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -21,17 +21,15 @@ _BAND = 64
 def surface_of(pixels: Pixels) -> pygame.Surface:
     """A surface that draws into `pixels`, (height, width, 3), without a copy."""
     height, width, _ = pixels.shape
-    return pygame.image.frombuffer(pixels, (width, height), "RGB")
+    return pygame.image.frombuffer(pixels.data, (width, height), "RGB")
 
 
 def still_picture(width: int, height: int, strokes: Look) -> Pixels:
-    """The field with `strokes` on it, (height, width, 3)."""
+    """The field with `strokes` on it, (height, width, 3); what is clear lies beneath what is opaque."""
     rows = np.linspace(FIELD_TOP, FIELD_BOTTOM, height).round().astype(np.uint8)
     pixels = np.repeat(rows[:, None, :], width, axis=1)
-    target = surface_of(pixels)
-    for top in range(0, height, _BAND):
-        band = pygame.Rect(0, top, width, min(_BAND, height - top))
-        _stamp(target, _rasterised(strokes, band), band.topleft)
+    strokes = tuple(sorted(strokes, key=lambda stroke: stroke.color[3]))
+    _stamp(surface_of(pixels), _rasterised(strokes, pygame.Rect(0, 0, width, height)), (0, 0))
     return pixels
 
 
@@ -61,54 +59,51 @@ class Sprite:
         """Draw it with its (0, 0) at the pixel coordinates (x, y)."""
         column, right = divmod(round(x * FINENESS), FINENESS)
         row, down = divmod(round(y * FINENESS), FINENESS)
-        place = self._area.move(column, row)
-        if not place.colliderect(target.get_rect()):
-            return
+        left, top = self._area.left + column, self._area.top + row
+        width, height = target.get_size()
+        if not (-self._area.width < left < width and -self._area.height < top < height):
+            return  # pygame would refuse what lies very far outside
         image = self._images.get((right, down))
         if image is None:
             moved = [_moved(stroke, right / FINENESS, down / FINENESS) for stroke in self._look]
             image = self._images[right, down] = _rasterised(moved, self._area)
-        _stamp(target, image, place.topleft)
+        _stamp(target, image, (left, top))
 
 
 class Label:
-    """A line of text in the top left corner, as large as the picture's height suggests and its width allows."""
+    """A line of text that begins at a corner, made smaller where it is wider than the room that it has."""
 
-    def __init__(self, width: int, height: int) -> None:
+    def __init__(self, left: int, top: int, room: int, size: int) -> None:
         pygame.font.init()
-        self._inset = round(0.045 * min(width, height))
-        self._room = width - 2 * self._inset
-        self._size = max(11, round(0.065 * height))
+        self._font = pygame.font.Font(None, size)
+        self._corner = (left, top)
+        self._room = room
         self._text = ""
         self._image = pygame.Surface((0, 0))
 
     def draw(self, target: pygame.Surface, text: str) -> None:
         if text != self._text:
             self._text, self._image = text, self._printed(text)
-        target.blit(self._image, (self._inset, self._inset))
+        _stamp(target, self._image, self._corner)
 
     def _printed(self, text: str) -> pygame.Surface:
-        font = self._font(text)
-        shift = max(1, font.get_height() // 16)
-        width, height = font.size(text)
-        image = pygame.Surface((width + shift, height + shift), pygame.SRCALPHA)
-        for color, place in ((TEXT_SHADOW, (shift, shift)), (TEXT, (0, 0))):
-            image.blit(font.render(text, True, color), place)
-        return image
-
-    def _font(self, text: str) -> pygame.font.Font:
-        for size in range(self._size, 1, -1):
-            font = pygame.font.Font(None, size)
-            if font.size(text)[0] <= self._room:
-                return font
-        return pygame.font.Font(None, 1)
+        width, height = self._font.size(text)
+        shadow = height // 20  # small letters would drown in it
+        image = pygame.Surface((width + shadow, height + shadow), pygame.SRCALPHA)
+        for color, place in ((TEXT_SHADOW, (shadow, shadow)), (TEXT, (0, 0))):
+            image.blit(self._font.render(text, True, color), place)
+        image = image.premul_alpha()
+        if image.get_width() <= self._room:
+            return image
+        height = max(1, round(image.get_height() * self._room / image.get_width()))
+        return pygame.transform.smoothscale(image, (self._room, height))
 
 
 def _stamp(target: pygame.Surface, image: pygame.Surface, place: tuple[int, int]) -> None:
     target.blit(image, place, special_flags=pygame.BLEND_PREMULTIPLIED)
 
 
-def _area_of(look: Iterable[Stroke]) -> pygame.Rect:
+def _area_of(look: Sequence[Stroke]) -> pygame.Rect:
     """The whole pixels that a look touches."""
     xs = [(point[0], stroke.radius) for stroke in look for point in (stroke.start, stroke.end)]
     ys = [(point[1], stroke.radius) for stroke in look for point in (stroke.start, stroke.end)]
@@ -122,15 +117,19 @@ def _moved(stroke: Stroke, right: float, down: float) -> Stroke:
     return Stroke((x0 + right, y0 + down), (x1 + right, y1 + down), stroke.radius, stroke.color)
 
 
-def _rasterised(strokes: Iterable[Stroke], area: pygame.Rect) -> pygame.Surface:
+def _rasterised(strokes: Sequence[Stroke], area: pygame.Rect) -> pygame.Surface:
     """What `strokes` leave on an area of the picture, with colours multiplied by their opacity.
 
     Only so is the mean of an opaque and a clear pixel right: a clear one has no colour to give.
     """
-    fine = pygame.Surface((area.width * FINENESS, area.height * FINENESS), pygame.SRCALPHA)
-    for stroke in strokes:
-        _draw_fine(fine, _moved(stroke, -area.left, -area.top))
-    return pygame.transform.smoothscale(fine.premul_alpha(), area.size)
+    image = pygame.Surface(area.size, pygame.SRCALPHA)
+    for top in range(area.top, area.bottom, _BAND):
+        rows = min(_BAND, area.bottom - top)
+        fine = pygame.Surface((area.width * FINENESS, rows * FINENESS), pygame.SRCALPHA)
+        for stroke in strokes:
+            _draw_fine(fine, _moved(stroke, -area.left, -top))
+        _stamp(image, pygame.transform.smoothscale(fine.premul_alpha(), (area.width, rows)), (0, top - area.top))
+    return image
 
 
 def _draw_fine(fine: pygame.Surface, stroke: Stroke) -> None:
@@ -140,8 +139,8 @@ def _draw_fine(fine: pygame.Surface, stroke: Stroke) -> None:
         pygame.draw.circle(fine, stroke.color, (round(x), round(y)), round(radius))
     length = math.hypot(x1 - x0, y1 - y0)
     if length > 0:
-        across, up = -radius * (y1 - y0) / length, radius * (x1 - x0) / length
+        # A polygon covers the pixels of its corners, too: half a pixel less on each side keeps it as wide as the discs.
+        across, up = -(radius - 0.5) * (y1 - y0) / length, (radius - 0.5) * (x1 - x0) / length
         corners = ((x0, y0, 1), (x1, y1, 1), (x1, y1, -1), (x0, y0, -1))
-        # A polygon covers the pixels of its corners, too: half a pixel less keeps it in the middle.
-        outline = [(x + side * across - 0.5, y + side * up - 0.5) for x, y, side in corners]
+        outline = [(math.floor(x + side * across), math.floor(y + side * up)) for x, y, side in corners]
         pygame.draw.polygon(fine, stroke.color, outline)

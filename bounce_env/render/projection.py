@@ -1,6 +1,7 @@
 """From the scene's metres (y up) to the picture's pixels (y down) and back."""
 
 from dataclasses import dataclass
+from numbers import Integral
 from typing import Self
 
 import numpy as np
@@ -12,6 +13,9 @@ DEFAULT_HEIGHT = 560
 LONGEST_SHAPE = 4.0
 """A picture whose size follows the scene is at most this many times longer than wide: a scene of one
 level wall would else be drawn on a ribbon."""
+
+LARGEST_SIDE = 8192
+"""A picture is asked for with at most this width or height, pixels."""
 
 MARGIN = 0.02
 """Empty border around a scene, as a share of its longer side: a stroke centred on the border is drawn whole."""
@@ -39,11 +43,9 @@ class Projection:
 
         width, height: pixels. One left out follows the shape of `bounds` and is even, as video codecs
         demand; with both left out the height is `DEFAULT_HEIGHT`; with both given the scene is letterboxed.
-        Raises ValueError unless they are positive integers.
+        Raises ValueError unless they are integers from 1 to `LARGEST_SIDE`.
         """
-        for name, value in (("width", width), ("height", height)):
-            if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
-                raise ValueError(f"{name} = {value!r}: must be None or an integer >= 1 (pixels)")
+        width, height = _checked("width", width), _checked("height", height)
         x_min, y_min, x_max, y_max = bounds
         longer = max(x_max - x_min, y_max - y_min) or 1.0
         across = x_max - x_min + 2 * MARGIN * longer
@@ -69,6 +71,14 @@ class Projection:
     def to_world(self, pixels: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Metres of pixel coordinates (..., 2), as of a mouse; of the same shape."""
         return (np.asarray(pixels, dtype=np.float64) - (self.left, self.bottom)) / (self.scale, -self.scale)
+
+
+def _checked(name: str, pixels: int | None) -> int | None:
+    if pixels is None:
+        return None
+    if isinstance(pixels, bool) or not isinstance(pixels, Integral) or not 1 <= pixels <= LARGEST_SIDE:
+        raise ValueError(f"{name} = {pixels!r}: must be None or an integer from 1 to {LARGEST_SIDE} (pixels)")
+    return int(pixels)
 
 
 def _even(pixels: float) -> int:

@@ -42,7 +42,7 @@ class Renderer:
             for i, e in paddles.items()
         }
         self._ball = painter.Sprite(ball_look(scene, self.projection))
-        self._label = painter.Label(*size)
+        self._label = painter.Label(*_label_place(scene, self.projection))
 
     def frame(self, picture: Picture) -> npt.NDArray[np.uint8]:
         """A new C-contiguous array of RGB pixels, shape (height, width, 3), rows from the top.
@@ -58,16 +58,25 @@ class Renderer:
 
         pixels = self._background.copy()
         target = self._painter.surface_of(pixels)
-        if text is not None:
-            self._label.draw(target, text)
-        for i in np.flatnonzero(hits):
+        for i in np.flatnonzero(hits).tolist():
             if i in self._flashes:
                 self._flashes[i].draw(target)
+        if text is not None:
+            self._label.draw(target, text)
         for (i, (calm, lit)), (x, y) in zip(self._paddles.items(), paddles.tolist(), strict=True):
             (lit if hits[i] else calm).draw(target, x, y)
         for x, y in balls[alive].tolist():
             self._ball.draw(target, x, y)
         return pixels
+
+
+def _label_place(scene: Scene, projection: Projection) -> tuple[int, int, int, int]:
+    """Left, top, room to the right and text size, in pixels: the field's top left corner, inside its walls."""
+    x_min, y_min, x_max, y_max = scene.bounds
+    (left, top), (right, bottom) = projection.to_pixels([(x_min, y_max), (x_max, y_min)]).tolist()
+    inset = max(2, round(0.025 * min(projection.width, projection.height)))
+    room = max(1, int(right - left) - 2 * inset)
+    return round(left) + inset, round(top) + inset // 2, room, max(11, round(0.06 * (bottom - top)))
 
 
 def _points(name: str, value: npt.ArrayLike, count: int | None = None) -> npt.NDArray[np.float64]:
@@ -85,7 +94,7 @@ def _points(name: str, value: npt.ArrayLike, count: int | None = None) -> npt.ND
 def _flags(name: str, value: npt.ArrayLike | None, count: int, *, missing: bool) -> npt.NDArray[np.bool_]:
     if value is None:
         return np.full(count, missing)
-    flags = np.asarray(value) != 0
+    flags = np.asarray(value).astype(np.bool_)
     if flags.shape != (count,):
         raise ValueError(f"{name} has shape {flags.shape}: must be ({count},)")
     return flags
@@ -94,4 +103,5 @@ def _flags(name: str, value: npt.ArrayLike | None, count: int, *, missing: bool)
 def _printed(score: float) -> str:
     if not math.isfinite(score):
         raise ValueError(f"score = {score!r}: must be None or finite")
-    return f"{score:,.0f}" if score == round(score) else f"{score:,.2f}"
+    decimals = 0 if score == round(score) else 2
+    return f"{float(score):z,.{decimals}f}"

@@ -15,7 +15,8 @@ class Window:
     """A window on the desktop that shows frames at a steady pace.
 
     size: (width, height) of the frames, pixels. title: in the window's bar. fps: frames a second at most.
-    Raises `gymnasium.error.DependencyNotInstalled` without pygame, `pygame.error` without a display.
+    Raises `gymnasium.error.DependencyNotInstalled` without pygame, `pygame.error` if SDL finds no way to show
+    anything; on a machine without a display it usually keeps the window in memory.
 
     pygame has one display: a new window takes the place of the one before, which then counts as closed.
 
@@ -40,7 +41,7 @@ class Window:
     @property
     def closed(self) -> bool:
         """Whether the program or the user closed it; it does not open again."""
-        return Window._open is not self
+        return Window._open is not self or not self._pygame.display.get_init()
 
     def show(self, frame: npt.NDArray[np.uint8]) -> None:
         """Show a frame, (height, width, 3), handle what the user did, and wait until the next one is due.

@@ -159,6 +159,17 @@ def test_paddle_at_the_speed_of_the_ball_does_not_hit(gap):
     assert world.position[0] == pytest.approx((7.0 + gap, 0))
 
 
+def test_cap_never_leaves_the_ball_closing():
+    """v' = (100, 2.1) is capped to 3 m/s: shrunk as a whole it would fall behind the paddle's 2 m/s."""
+    paddle = Paddle((0, -50), (0, 50), half_width=0, radius=0.5, max_speed=2, b=0.05, name="paddle")
+    scene = Scene(gravity=(0, 0), ball=Ball(radius=0.5), max_speed=3, elements=(paddle,))
+    world = started(scene, (-100, 3), (100, 0))  # above the paddle after 1 s, when that has come up by 2 m
+    world.command("paddle", 2.0)
+    (row,) = world.advance(5.0, ledger=True)
+    assert (row["time"], row["nx"], row["ny"]) == pytest.approx((1.0, 0.0, 1.0), abs=1e-13)
+    assert (row["vx1"], row["vy1"]) == pytest.approx((math.sqrt(9 - 2.1**2), 2.1), rel=1e-12)
+
+
 def test_paddle_closing_on_a_wall():
     """v -> v + 2 u at every hit of the paddle, and L (v + u) stays the same from one to the next."""
     u, v = 0.25, 1.5

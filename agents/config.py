@@ -1,0 +1,190 @@
+"""Training configs: YAML in the RL Zoo's format, one entry per environment id, checked strictly; nothing is evaluated."""
+
+import math
+from collections.abc import Callable, Hashable, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar
+
+import yaml
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from stable_baselines3.common.utils import LinearSchedule
+
+from agents.command import Refused
+from bounce_env.scene.fields import Allowed
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ValueError
+    return value
+
+
+def _where(holds: Callable[[float], bool]) -> Callable[[Any], float]:
+    def convert(value: Any) -> float:
+        if not holds(_number(value)):
+            raise ValueError
+        return value
+
+    return convert
+
+
+def _count(value: Any) -> int:
+    """A whole number, which may be written as 1.0e+6."""
+    if _number(value) < 1 or value != int(value):
+        raise ValueError
+    return int(value)
+
+
+def _layers(value: Any) -> list[int] | dict[str, list[int]]:
+    if isinstance(value, dict):
+        if set(value) != {"pi", "vf"}:
+            raise ValueError
+        return {name: [_count(units) for units in layers] for name, layers in value.items()}
+    return [_count(units) for units in value]
+
+
+def _schedule(value: Any) -> float | str:
+    number = float(value.removeprefix("lin_")) if isinstance(value, str) else value
+    if _number(number) <= 0.0 or (isinstance(value, str) and not value.startswith("lin_")):
+        raise ValueError
+    return value
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError
+    return value
+
+
+# What a value may be, and the words that an error says it with. YAML 1.1 reads 1e-3 as text, hence the spelling.
+Count = Annotated[int, Allowed("a whole number >= 1 (a large one may be written 1.0e+6)", _count)]
+Number = Annotated[float, Allowed("a number", _number)]
+Positive = Annotated[float, Allowed("a number > 0", _where(lambda x: x > 0.0))]
+NotNegative = Annotated[float, Allowed("a number >= 0", _where(lambda x: x >= 0.0))]
+Share = Annotated[float, Allowed("a number from 0 to 1", _where(lambda x: 0.0 <= x <= 1.0))]
+Flag = Annotated[bool, Allowed("true or false", _flag)]
+Schedule = Annotated[
+    float | str, Allowed("a number > 0 such as 1.0e-3, or lin_1e-3 to fall linearly from there to 0", _schedule)
+]
+Layers = Annotated[
+    Any, Allowed("a list of whole numbers >= 1, or {pi: such a list, vf: such a list}", _layers)
+]
+
+
+class Strict(BaseModel):
+    """Frozen; unknown keys and values of another type are errors."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class PolicyKwargs(Strict):
+    """The network; what SB3's MlpPolicy takes and YAML can say. `net_arch`: units of the hidden layers."""
+
+    net_arch: Layers = [64, 64]
+    log_std_init: Number = 0.0
+    ortho_init: Flag = True
+
+
+class Hyperparameters(Strict):
+    """An entry of a config: RL Zoo's keys for PPO with SB3's defaults. `n_timesteps` must be given."""
+
+    n_timesteps: Count
+    n_envs: Count = 1
+    env_kwargs: dict[str, Any] = {}
+    policy: Literal["MlpPolicy"] = "MlpPolicy"
+    policy_kwargs: PolicyKwargs = PolicyKwargs()
+    n_steps: Count = 2048
+    batch_size: Count = 64
+    n_epochs: Count = 10
+    learning_rate: Schedule = 3e-4
+    clip_range: Schedule = 0.2
+    clip_range_vf: Schedule | None = None
+    gamma: Share = 0.99
+    gae_lambda: Share = 0.95
+    normalize_advantage: Flag = True
+    ent_coef: NotNegative = 0.0
+    vf_coef: NotNegative = 0.5
+    max_grad_norm: Positive = 0.5
+    use_sde: Flag = False
+    target_kl: Positive | None = None
+
+    @model_validator(mode="after")
+    def _batches_are_whole(self) -> "Hyperparameters":
+        if (self.n_envs * self.n_steps) % self.batch_size:
+            raise ValueError(f"batch_size must divide n_envs * n_steps = {self.n_envs * self.n_steps}")
+        return self
+
+    def for_ppo(self) -> dict[str, Any]:
+        """Keyword arguments of SB3's PPO, beside the environment."""
+        kwargs = self.model_dump(exclude={"n_timesteps", "n_envs", "env_kwargs"})
+        schedules = {key: kwargs[key] for key in ("learning_rate", "clip_range", "clip_range_vf")}
+        return kwargs | {key: as_schedule(value) for key, value in schedules.items()}
+
+
+def as_schedule(value: float | str | None) -> float | LinearSchedule | None:
+    """What SB3 takes for a config's number or "lin_NUMBER"."""
+    if isinstance(value, str):
+        return LinearSchedule(float(value.removeprefix("lin_")), 0.0, 1.0)
+    return value
+
+
+class _Loader(yaml.SafeLoader):
+    """Plain YAML, in which a key given twice is an error."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: Flag = False) -> dict[Hashable, Any]:
+        keys = [key.value for key, _ in node.value if key.value != "<<"]
+        twice = next((key for key in keys if keys.count(key) > 1), None)
+        if twice is not None:
+            raise yaml.constructor.ConstructorError(None, None, f"key {twice!r} is given twice", node.start_mark)
+        return super().construct_mapping(node, deep)
+
+
+def read_yaml(path: Path) -> dict[str, Any]:
+    """The mapping in a YAML file; raises Refused, naming file and line, where there is none."""
+    try:
+        data = yaml.load(path.read_bytes(), _Loader)  # noqa: S506 (a SafeLoader)
+    except OSError as error:
+        raise Refused(f"{path}: cannot be read: {error.strerror}") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise Refused(f"{path}: is not YAML: {error}") from None
+    if not isinstance(data, dict):
+        raise Refused(f"{path}: must be a mapping from environment ids to hyperparameters")
+    return data
+
+
+def load_config(path: Path, env_id: str) -> Hyperparameters:
+    """The entry of `env_id` in a config file.
+
+    Raises Refused: one line for each thing that is wrong, with file, id, key, value and what is allowed.
+    """
+    data = read_yaml(path)
+    if env_id not in data:
+        raise Refused(f"{path}: has no entry {env_id!r}; it has {', '.join(map(str, data)) or 'none'}")
+    return checked(Hyperparameters, data[env_id], f"{path}: {env_id}")
+
+
+def checked(model: type[Model], data: Any, where: str) -> Model:
+    """`data` as a `model`; raises Refused, beginning with `where`, for all that is wrong in it."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        lines = [f"{where}: {_explained(model, dict(details))}" for details in error.errors()]
+        raise Refused("\n".join(lines)) from None
+
+
+def _explained(model: type[BaseModel], details: Mapping[str, Any]) -> str:
+    key, kind = ".".join(map(str, details["loc"])), details["type"]
+    if kind == "missing":
+        return f"{key}: must be given"
+    if kind == "extra_forbidden":
+        for name in details["loc"][:-1]:
+            model = model.model_fields[name].annotation
+        return f"unknown key {key!r}: must be one of {', '.join(model.model_fields)}"
+    message = details["msg"].removeprefix("Value error, ")
+    if kind in ("model_type", "dict_type"):
+        message = "must be a mapping"
+    elif kind == "literal_error":
+        message = f"must be {details['ctx']['expected']}"
+    return f"{key} = {details['input']!r}: {message}" if key else message

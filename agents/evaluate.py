@@ -1,0 +1,1 @@
+"""Evaluation on held-out episodes; `python -m agents.evaluate`."""

@@ -1,0 +1,118 @@
+"""Run folders: what a training writes, under which names, and how it is found again.
+
+    runs/<id>-<time>/
+      config.yml           the hyperparameters, all of them, in the RL Zoo's format; seed and versions
+      model.zip            the newest checkpoint, at the end the trained model
+      learning_curve.csv   and .png
+      tensorboard/
+      rollout.mp4          and .gif
+      summary.json
+
+A model.zip is SB3's own format, which can run code when it is loaded: load only files that you trust.
+"""
+
+import platform
+import time
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import yaml
+from stable_baselines3 import PPO
+from stable_baselines3.common.vec_env import VecEnv
+
+from agents.command import Refused
+from agents.config import Count, Hyperparameters, Seed, Strict, checked, read_yaml
+from agents.files import replacing, write_text
+from agents.task import Task
+
+PACKAGES = ("bounce_env", "gymnasium", "numpy", "numba", "stable-baselines3", "torch")
+
+HEADER = """\
+# A finished or interrupted training. `python -m agents.train --resume FOLDER` goes on with it;
+# `python -m agents.train --config THIS_FILE` does it again.
+"""
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of all that decides the result of a training."""
+    return {"python": platform.python_version(), **{name: version(name) for name in PACKAGES}}
+
+
+class Origin(Strict):
+    """The part of a run's config that is not hyperparameters."""
+
+    env_id: str
+    seed: Seed
+    versions: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A training: what is trained on what, and the folder that holds it."""
+
+    folder: Path
+    task: Task
+    hyperparameters: Hyperparameters
+    seed: int
+    versions: dict[str, str]
+
+    @property
+    def model(self) -> Path:
+        """The newest checkpoint."""
+        return self.folder / "model.zip"
+
+    def save_model(self, model: PPO) -> None:
+        """Replace the checkpoint."""
+        with replacing(self.model) as unfinished:
+            model.save(unfinished)
+
+    def load_model(self, env: VecEnv | None = None, **changes: Any) -> PPO:
+        """The newest checkpoint. Raises Refused if there is none, if it is damaged, or if it does not fit the config."""
+        if not self.model.exists():
+            raise Refused(f"{self.folder}: has no model.zip: it was stopped before the first checkpoint; start anew")
+        try:
+            model = PPO.load(self.model, env=env, device="cpu", **changes)
+        except Exception as error:  # whatever SB3, torch, pickle and zip may raise on a damaged file
+            raise Refused(f"{self.model}: cannot be loaded: {error}") from error
+        expected = self.hyperparameters.for_ppo()
+        for key in ("n_steps", "batch_size", "n_epochs", "gamma", "gae_lambda", "policy_kwargs", "ent_coef", "vf_coef"):
+            if getattr(model, key) != expected[key]:
+                raise Refused(
+                    f"{self.folder / 'config.yml'}: {key} = {expected[key]!r}, but model.zip was trained with "
+                    f"{getattr(model, key)!r}; restore the config, or start anew with --config"
+                )
+        return model
+
+
+def new_run(output: Path, task: Task, hyperparameters: Hyperparameters, seed: int) -> Run:
+    """Make a folder <id>-<time> in `output`, with the config."""
+    name = f"{task.env_id.replace('/', '-')}-{time.strftime('%Y%m%d-%H%M%S')}"
+    folder, again = output / name, 1
+    while folder.exists():
+        again += 1
+        folder = output / f"{name}-{again}"
+    folder.mkdir(parents=True)
+    run = Run(folder, task, hyperparameters, seed, versions())
+    content = {
+        task.env_id: hyperparameters.model_dump(),
+        "run": {"env_id": task.env_id, "seed": seed, "versions": run.versions},
+    }
+    write_text(folder / "config.yml", HEADER + yaml.safe_dump(content, sort_keys=False))
+    return run
+
+
+def open_run(folder: Path) -> Run:
+    """The run in `folder`. Raises Refused where there is none, or where its config.yml is not valid."""
+    path = folder / "config.yml"
+    if not path.is_file():
+        raise Refused(f"{folder}: is not a run folder: it has no config.yml")
+    data = read_yaml(path)
+    origin = checked(Origin, data.pop("run", None), f"{path}: run")
+    if set(data) != {origin.env_id}:
+        raise Refused(f"{path}: must have the entries 'run' and {origin.env_id!r}; it has {', '.join(map(str, data))}")
+    hyperparameters = checked(Hyperparameters, data[origin.env_id], f"{path}: {origin.env_id}")
+    return Run(
+        folder, Task(origin.env_id, hyperparameters.env_kwargs), hyperparameters, origin.seed, origin.versions
+    )

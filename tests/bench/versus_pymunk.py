@@ -1,0 +1,96 @@
+"""How many steps a second `Bounce/Paddle-v0` makes in a batch on one thread, and pymunk stepping the same scene.
+
+Run `python -m tests.bench.versus_pymunk` for the table; both are measured in turns, so that noise hits both alike.
+pymunk does less: one step of its physics per step of the env, no observation, no reward, no reset.
+"""
+
+import statistics
+import time
+from collections.abc import Callable
+
+import gymnasium as gym
+import numpy as np
+import pymunk
+
+import bounce_env
+from bounce_env import Bumper, Paddle, Wall, load_scene
+
+WORLDS = 1024
+STEP = 1.0 / 30.0
+
+
+def pymunk_space() -> tuple[pymunk.Space, pymunk.Body]:
+    """The scene of the paddle game, the drain closed so that the ball stays in play, and its paddle."""
+    scene = load_scene("paddle")
+    space = pymunk.Space()
+    space.gravity = scene.gravity
+    paddle_body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    shapes: list[pymunk.Shape] = [pymunk.Segment(space.static_body, (0.0, 0.0), (1.0, 0.0), 0.0)]
+    for element in scene.elements:
+        if isinstance(element, Wall):
+            shapes.append(pymunk.Segment(space.static_body, element.start, element.end, 0.0))
+        elif isinstance(element, Bumper):
+            shapes.append(pymunk.Circle(space.static_body, element.radius, element.center))
+        elif isinstance(element, Paddle):
+            half = element.half_width
+            paddle_body.position = (0.5, element.rail_start[1])
+            shapes.append(pymunk.Segment(paddle_body, (-half, 0.0), (half, 0.0), element.radius))
+    ball = pymunk.Body(1.0, float("inf"))
+    ball.position, ball.velocity = (0.4, 0.55), (0.7, 1.3)
+    shapes.append(pymunk.Circle(ball, scene.ball.radius))
+    for shape in shapes:
+        shape.elasticity = 1.0
+    space.add(ball, paddle_body, *shapes)
+    return space, paddle_body
+
+
+def our_steps(seconds: float) -> Callable[[], float]:
+    """A function that measures our steps per second once."""
+    envs = gym.make_vec("Bounce/Paddle-v0", num_envs=WORLDS, vectorization_mode="vector_entry_point", copy=False)
+    envs.reset(seed=0)
+    actions = np.random.default_rng(0).uniform(-1.0, 1.0, (64, WORLDS, 1)).astype(np.float32)
+    for k in range(200):
+        envs.step(actions[k % 64])
+
+    def measure() -> float:
+        steps, begin = 0, time.perf_counter()
+        while time.perf_counter() - begin < seconds:
+            for k in range(64):
+                envs.step(actions[k])
+            steps += 64 * WORLDS
+        return steps / (time.perf_counter() - begin)
+
+    return measure
+
+
+def pymunk_steps(seconds: float) -> Callable[[], float]:
+    """A function that measures pymunk's steps per second once."""
+    space, paddle = pymunk_space()
+    speeds = np.random.default_rng(0).uniform(-1.5, 1.5, 256).tolist()
+
+    def measure() -> float:
+        steps, begin = 0, time.perf_counter()
+        while time.perf_counter() - begin < seconds:
+            for speed in speeds:
+                outward = (paddle.position.x - 0.5) * speed > 0.0 and abs(paddle.position.x - 0.5) > 0.355
+                paddle.velocity = (0.0 if outward else speed, 0.0)
+                space.step(STEP)
+            steps += len(speeds)
+        return steps / (time.perf_counter() - begin)
+
+    return measure
+
+
+def ratio(seconds: float = 0.5, rounds: int = 5) -> tuple[float, float, float]:
+    """Medians of ours, pymunk's, and of their ratio over `rounds` rounds of `seconds` each, measured in turns."""
+    ours, theirs = our_steps(seconds), pymunk_steps(seconds)
+    pairs = [(ours(), theirs()) for _ in range(rounds)]
+    a, b = zip(*pairs, strict=True)
+    return statistics.median(a), statistics.median(b), statistics.median(x / y for x, y in pairs)
+
+
+if __name__ == "__main__":
+    mine, other, times = ratio(seconds=2.0)
+    print(f"bounce_env {bounce_env.__name__}: {mine / 1e6:.2f} M steps/s in a batch of {WORLDS}, one thread")  # noqa: T201
+    print(f"pymunk {pymunk.version}: {other / 1e3:.1f} k steps/s, same scene, one step of its physics each")  # noqa: T201
+    print(f"ratio {times:.0f}")  # noqa: T201

@@ -1,0 +1,69 @@
+"""Shared by the tests of the environments: the registry's variants, scripted actions, and equality to the bit."""
+
+from itertools import product
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+from gymnasium.vector import SyncVectorEnv, VectorEnv
+
+from bounce_env.registration import ENTRIES
+
+PADDLE = "Bounce/Paddle-v0"
+MODES = ("NEXT_STEP", "SAME_STEP", "DISABLED")
+KINDS = [{"action": action, "repeat_action_probability": p} for action, p in product(("continuous", "discrete"), (0.0, 0.25))]
+VARIANTS = [(entry.id, kwargs) for entry in ENTRIES for kwargs in KINDS]
+
+
+def name(value: object) -> str | None:
+    """How pytest calls a variant's kwargs."""
+    if isinstance(value, dict):
+        return f"{value['action']}-{'sticky' if value['repeat_action_probability'] else 'plain'}"
+    return None
+
+
+def make_vec(num_envs: int, mode: str = "NEXT_STEP", **kwargs: Any) -> VectorEnv:
+    """Our own vector environment."""
+    return gym.make_vec(
+        PADDLE, num_envs=num_envs, vectorization_mode="vector_entry_point", autoreset_mode=mode, **kwargs
+    )
+
+
+def make_sync(num_envs: int, mode: str, **kwargs: Any) -> SyncVectorEnv:
+    """Gymnasium's vector environment over our single ones: the reference for ours."""
+    mode = gym.vector.AutoresetMode[mode]
+    return SyncVectorEnv([lambda: gym.make(PADDLE, **kwargs)] * num_envs, autoreset_mode=mode)
+
+
+def scripted(space: gym.Space, steps: int, seed: int = 0) -> npt.NDArray[Any]:
+    """Actions (steps, *space.shape) of a batched space, each held for 5 steps, so that a paddle gets somewhere."""
+    rng = np.random.default_rng(seed)
+    shape = (steps // 5 + 1, *space.shape)
+    if isinstance(space, gym.spaces.MultiDiscrete):
+        choices = rng.integers(0, space.nvec, shape)
+    else:
+        choices = rng.uniform(-1.0, 1.0, shape).astype(np.float32)
+    return np.repeat(choices, 5, axis=0)[:steps]
+
+
+def assert_same(ours: Any, theirs: Any, where: str = "") -> None:
+    """The same types, dtypes, shapes and bits, all the way down."""
+    if isinstance(theirs, dict):
+        assert ours.keys() == theirs.keys(), where
+        for key, value in theirs.items():
+            assert_same(ours[key], value, f"{where}[{key!r}]")
+    elif isinstance(theirs, tuple | list):
+        assert len(ours) == len(theirs), where
+        for i, (one, other) in enumerate(zip(ours, theirs, strict=True)):
+            assert_same(one, other, f"{where}[{i}]")
+    elif isinstance(theirs, np.ndarray):
+        assert isinstance(ours, np.ndarray), where
+        assert (ours.dtype, ours.shape) == (theirs.dtype, theirs.shape), where
+        if theirs.dtype == object:
+            assert_same(ours.tolist(), theirs.tolist(), where)
+        else:
+            assert ours.tobytes() == theirs.tobytes(), f"{where}: {ours} is not {theirs}"
+    else:
+        assert type(ours) is type(theirs), where
+        assert ours == theirs, where

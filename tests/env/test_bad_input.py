@@ -1,0 +1,235 @@
+"""What is not allowed is refused, by name, value and what is allowed, before anything has moved."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from rollouts import PADDLE, assert_same, make_vec
+
+from bounce_env.env import PaddleEnv
+from bounce_env.vector import PaddleVectorEnv
+
+NAN, INF = float("nan"), float("inf")
+
+# keyword: (bad value, words of the message besides the keyword and the value)
+GAME_KWARGS = [
+    ("scene", "nowhere", ["paddle", ".toml"]),
+    ("scene", 3, ["Scene", "string"]),
+    ("action", "keyboard", ["continuous", "discrete"]),
+    ("frame_skip", 0, ["greater than or equal to 1"]),
+    ("frame_skip", 61, ["less than or equal to 60"]),
+    ("frame_skip", True, ["integer"]),
+    ("frame_skip", 2.0, ["integer"]),
+    ("frame_skip", None, ["integer"]),
+    ("repeat_action_probability", 1.0, ["less than 1"]),
+    ("repeat_action_probability", -0.1, ["greater than or equal to 0"]),
+    ("repeat_action_probability", NAN, ["less than 1"]),
+    ("time_limit", 0, ["greater than 0"]),
+    ("time_limit", -1.0, ["greater than 0"]),
+    ("time_limit", NAN, ["finite"]),
+    ("time_limit", INF, ["finite"]),
+    ("time_limit", "long", ["number"]),
+    ("render_mode", "x", ["rgb_array"]),
+    ("width", 0, ["an integer from 1 to"]),
+    ("height", -3, ["an integer from 1 to"]),
+    ("height", 1.5, ["an integer from 1 to"]),
+]
+VECTOR_KWARGS = [
+    ("num_envs", 0, [">= 1"]),
+    ("num_envs", 2.0, [">= 1"]),
+    ("num_envs", True, [">= 1"]),
+    ("num_threads", 0, [">= 1"]),
+    ("num_threads", None, [">= 1"]),
+    ("autoreset_mode", "x", ["NEXT_STEP", "SAME_STEP", "DISABLED"]),
+    ("copy", "no", ["True or False"]),
+    ("max_episode_steps", 0, [">= 1"]),
+    ("max_episode_steps", 7.5, [">= 1"]),
+    ("render_mode", "human", ["rgb_array"]),
+]
+
+
+def check_words(error, words):
+    for word in words:
+        assert word in str(error.value)
+
+
+@pytest.mark.parametrize(("keyword", "value", "allowed"), GAME_KWARGS)
+def test_single_env_names_the_keyword_the_value_and_what_is_allowed(keyword, value, allowed):
+    with pytest.raises(ValueError, match=keyword) as error:
+        PaddleEnv(**{keyword: value})
+    check_words(error, [str(value), *allowed])
+
+
+@pytest.mark.parametrize(("keyword", "value", "allowed"), GAME_KWARGS + VECTOR_KWARGS)
+def test_vector_env_names_the_keyword_the_value_and_what_is_allowed(keyword, value, allowed):
+    with pytest.raises(ValueError, match=keyword) as error:
+        PaddleVectorEnv(**{"num_envs": 2, keyword: value})
+    check_words(error, [str(value), *allowed])
+
+
+def test_an_unknown_keyword_is_named():
+    with pytest.raises(TypeError, match="frameskip"):
+        gym.make(PADDLE, frameskip=4)
+    with pytest.raises(TypeError, match="frameskip"):
+        make_vec(2, frameskip=4)
+
+
+def test_a_scene_that_cannot_be_played_says_what_it_lacks():
+    with pytest.raises(ValueError, match="paddles = 0: must be exactly 1.*drains = 0.*max_speed"):
+        gym.make(PADDLE, scene="box")
+
+
+BAD_ACTIONS = {
+    "continuous": [
+        (NAN, "actions\\[0\\] = nan: must be finite"),
+        ([-INF], "actions\\[0\\] = -inf: must be finite"),
+        ([0.0, 0.0], "shape \\(2,\\): must be 1 numbers"),
+        ([[[0.5]]], "shape \\(1, 1, 1\\): must be 1 numbers"),
+        ("0.5", "'0.5'.*must be numbers"),
+        (None, "None.*must be numbers"),
+        (True, "True.*must be numbers"),
+        (1j, "1.j.*must be numbers"),
+    ],
+    "discrete": [
+        (3, "3.*: each must be a whole number from 0 to 2"),
+        (-1, "-1.*: each must be a whole number from 0 to 2"),
+        (1.0, "1.*must be whole numbers"),
+        (NAN, "nan.*must be whole numbers"),
+        (True, "True.*must be whole numbers"),
+        ([1, 1], "shape \\(2,\\): must be 1 whole numbers from 0 to 2"),
+        ([[1]], "shape \\(1, 1\\): must be 1 whole numbers"),
+    ],
+}
+
+
+@pytest.mark.parametrize(("kind", "action", "message"), [(k, *bad) for k, some in BAD_ACTIONS.items() for bad in some])
+def test_a_bad_action_raises_and_moves_nothing(kind, action, message):
+    env, untouched = (PaddleEnv(action=kind) for _ in range(2))
+    env.reset(seed=1), untouched.reset(seed=1)
+    with pytest.raises(ValueError, match=message):
+        env.step(action)
+    assert_same(env.step(1), untouched.step(1))
+
+
+@pytest.mark.parametrize(
+    ("kind", "actions", "message"),
+    [
+        ("continuous", [0, NAN, 0], "actions\\[1\\] = nan: must be finite"),
+        ("continuous", [0, 0, INF], "actions\\[2\\] = inf: must be finite"),
+        ("continuous", [[0, 0, 0]], "shape \\(1, 3\\): must be 3 numbers, one per world"),
+        ("continuous", [[0, 0]] * 3, "shape \\(3, 2\\): must be 3 numbers, one per world"),
+        ("continuous", 0.5, "shape \\(\\): must be 3 numbers, one per world"),
+        ("discrete", [0, 1, 3], "3\\].*: each must be a whole number from 0 to 2"),
+        ("discrete", [0.0, 1.0, 2.0], "must be whole numbers"),
+        ("discrete", 1, "shape \\(\\): must be 3 whole numbers from 0 to 2, one per world"),
+        ("discrete", [0, 1], "shape \\(2,\\): must be 3 whole numbers from 0 to 2, one per world"),
+    ],
+)
+@pytest.mark.parametrize("threads", [1, 2])
+def test_one_bad_action_moves_no_world(kind, actions, message, threads):
+    envs, untouched = (PaddleVectorEnv(3, action=kind, num_threads=threads) for _ in range(2))
+    envs.reset(seed=1), untouched.reset(seed=1)
+    with pytest.raises(ValueError, match=message):
+        envs.step(actions)
+    good = np.array([0, 1, 1])
+    assert_same(envs.step(good), untouched.step(good))
+
+
+BAD_OPTIONS = [
+    ({"level": 1}, "options\\['level'\\]: must be one of position, velocity"),
+    ({"snapshot": b""}, "options\\['snapshot'\\]: must be one of position, velocity"),
+    ({"position": (0.5, 0.8)}, "\\(0.5, 0.8\\) overlaps .*bumper_bottom.* at least 0.08 m away"),
+    ({"position": (0.01, 0.6)}, "\\(0.01, 0.6\\) overlaps .*'left'.* at least 0.02 m away"),
+    ({"position": (0.5, 0.09)}, "\\(0.5, 0.09\\) overlaps .*'paddle'"),
+    ({"position": (1.5, 0.6)}, "options\\['position'\\] = \\(1.5, 0.6\\): must be on the field, x 0 to 1 "),
+    ({"position": (0.05, -0.03)}, "\\(0.05, -0.03\\): must be on the field, .* y -0.01"),  # it would never drain
+    ({"position": (0.5, 9.0)}, "\\(0.5, 9.0\\): must be on the field, .* to 1.4"),
+    ({"position": (0.5, NAN)}, "options\\['position'\\] = \\(0.5, nan\\): must be finite"),
+    ({"position": (0.5, 0.6, 0.7)}, "options\\['position'\\] = \\(0.5, 0.6, 0.7\\): must be a pair"),
+    ({"position": "middle"}, "options\\['position'\\] = 'middle': must be a pair of numbers"),
+    ({"position": None}, "options\\['position'\\] = None: must be a pair of numbers"),
+    ({"velocity": (3.0, 0.1)}, "options\\['velocity'\\] = \\(3.0, 0.1\\): must be at most 3.0 m/s"),
+    ({"velocity": (INF, 0.0)}, "options\\['velocity'\\] = \\(inf, 0.0\\): must be finite"),
+    ({"velocity": 1.0}, "options\\['velocity'\\] = 1.0: must be a pair"),
+]
+
+
+@pytest.mark.parametrize(("options", "message"), BAD_OPTIONS)
+def test_a_bad_reset_option_raises_and_resets_nothing(options, message):
+    env, untouched = PaddleEnv(), PaddleEnv()
+    env.reset(seed=1), untouched.reset(seed=1)
+    with pytest.raises(ValueError, match=message):
+        env.reset(seed=2, options=options)
+    assert_same(env.step([0.5]), untouched.step([0.5]))
+    assert_same(env.reset(), untouched.reset())
+
+
+TWO = np.array([True, True])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        *BAD_OPTIONS,
+        ({"position": [(0.5, 0.6)] * 3}, "must be a pair of numbers, or one for each of 2 worlds"),
+        ({"position": [(0.5, 0.6), (0.5, 0.8)]}, "\\(0.5, 0.8\\) overlaps"),
+        ({"reset_mask": [True, False]}, "options\\['reset_mask'\\] = \\[True, False\\]: must be a bool array"),
+        ({"reset_mask": np.ones(3, bool)}, "options\\['reset_mask'\\] .* shape \\(2,\\)"),
+        ({"reset_mask": np.ones(2)}, "options\\['reset_mask'\\] = .*: must be a bool array"),
+        ({"reset_mask": ~TWO}, "options\\['reset_mask'\\]: must be True for at least one world"),
+        ({"reset_mask": TWO, "level": 1}, "options\\['level'\\]: must be one of position, velocity"),
+    ],
+)
+def test_a_bad_reset_option_resets_no_world(options, message):
+    envs, untouched = PaddleVectorEnv(2), PaddleVectorEnv(2)
+    envs.reset(seed=1), untouched.reset(seed=1)
+    with pytest.raises(ValueError, match=message):
+        envs.reset(seed=2, options=options)
+    assert_same(envs.step([0.5, 0.5]), untouched.step([0.5, 0.5]))
+    assert_same(envs.reset(), untouched.reset())
+
+
+@pytest.mark.parametrize(
+    ("seed", "error", "message"),
+    [
+        (-1, gym.error.Error, "-1"),
+        ([5, -7], gym.error.Error, "-7"),
+        ([5, 0.5], gym.error.Error, "integer"),
+        ([5], ValueError, "seed: must be one number, or 2, one per world; got 1"),
+    ],
+)
+def test_a_bad_seed_seeds_no_world(seed, error, message):
+    envs, untouched = PaddleVectorEnv(2), PaddleVectorEnv(2)
+    envs.reset(seed=1), untouched.reset(seed=1)
+    with pytest.raises(error, match=message):
+        envs.reset(seed=seed)
+    assert_same(envs.reset(), untouched.reset())
+
+
+def test_a_single_env_that_is_not_running_asks_for_a_reset():
+    env = PaddleEnv(time_limit=0.05, render_mode="rgb_array")
+    with pytest.raises(gym.error.ResetNeeded, match=r"reset\(\)"):
+        env.step([0.0])
+    with pytest.raises(gym.error.ResetNeeded, match=r"reset\(\)"):
+        env.render()
+    env.reset(seed=0)
+    while not env.step([0.0])[3]:
+        pass
+    with pytest.raises(gym.error.ResetNeeded, match=r"reset\(\)"):
+        env.step([0.0])
+
+
+def test_a_vector_env_that_is_not_running_asks_for_a_reset():
+    envs = PaddleVectorEnv(2, render_mode="rgb_array")
+    for call in (lambda: envs.step([0.0, 0.0]), envs.render):
+        with pytest.raises(gym.error.ResetNeeded, match=r"reset\(\)"):
+            call()
+    envs.reset(options={"reset_mask": np.array([True, False])})
+    with pytest.raises(gym.error.ResetNeeded, match=r"reset\(\)"):
+        envs.step([0.0, 0.0])
+
+
+def test_rendering_without_a_mode_warns_how_to_choose_one():
+    for env in (PaddleEnv(), PaddleVectorEnv(2)):
+        env.reset(seed=0)
+        with pytest.warns(UserWarning, match="rgb_array"):
+            assert env.render() is None

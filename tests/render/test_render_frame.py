@@ -1,0 +1,303 @@
+"""Frames, pixel by pixel."""
+
+import hashlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import soak_count
+from pixel_scenes import (
+    INDEX,
+    PADDLE,
+    TABLE,
+    ball_color,
+    centroid,
+    changed,
+    distances,
+    empty_table,
+    hits_on,
+)
+
+from bounce_env.render import Picture, Renderer, painter
+from bounce_env.scene import Ball, Bumper, Paddle, Scene, Wall, builtin_scenes, load_scene
+
+SIZES = [(84, 84), (256, 384), (400, 560), (None, None)]
+
+
+@pytest.fixture(scope="module")
+def renderer() -> Renderer:
+    return Renderer(TABLE, 400, 560)
+
+
+def random_points(count: int, seed: int = 0) -> list[list[float]]:
+    return np.random.default_rng(seed).uniform((0.05, 0.15), (0.95, 1.35), (count, 2)).tolist()
+
+
+def test_a_frame_is_a_new_contiguous_rgb_array(renderer: Renderer) -> None:
+    frame = empty_table(renderer)
+    assert frame.shape == (560, 400, 3)
+    assert frame.dtype == np.uint8
+    assert frame.flags.c_contiguous
+    assert frame.flags.owndata
+    assert frame.flags.writeable
+    kept = frame.copy()
+    frame[:] = 0
+    assert (empty_table(renderer) == kept).all()
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_the_ball_is_where_the_projection_puts_it(width: int | None, height: int | None) -> None:
+    renderer = Renderer(TABLE, width, height)
+    empty = empty_table(renderer)
+    radius = max(0.02 * renderer.projection.scale, 1.5)
+    for point in random_points(soak_count(50, 3000)):
+        frame = renderer.frame(Picture(balls=[point], paddles=PADDLE))
+        away = distances(renderer, point)
+        assert (frame[away < radius - 0.8] == ball_color(renderer)).all()
+        assert (changed(frame, empty)[away > 1.8 * radius + 2] == 0).all()
+
+
+def test_the_ball_is_as_large_as_the_scene_says(renderer: Renderer) -> None:
+    radius = 0.02 * renderer.projection.scale
+    for point in random_points(20):
+        frame = renderer.frame(Picture(balls=[point], paddles=PADDLE))
+        pure = (frame == ball_color(renderer)).all(axis=2).sum()
+        assert np.pi * (radius - 1) ** 2 < pure < np.pi * radius**2
+
+
+def test_a_ball_moves_by_its_share_of_a_pixel() -> None:
+    renderer = Renderer(Scene(ball=Ball(radius=0.02), elements=(Bumper((0.5, -5.0), 0.01), Wall((0, 1), (1, 1)))))
+    # Two dark elements far away: only the field's slow gradient lies beneath the ball.
+    empty = renderer.frame(Picture(balls=()))
+    step = 0.3 / renderer.projection.scale
+    for i in range(soak_count(40, 1000)):
+        point = (0.4 + 0.37 * i * step % 0.3, 0.1 + i * step % 0.5)
+        seen = centroid(changed(renderer.frame(Picture(balls=[point])), empty))
+        # Half a quarter of a pixel from rounding the place, half an eighth from the raster, some from 8-bit colours.
+        assert np.abs(seen - renderer.projection.to_pixels(point)).max() < 0.2
+
+
+def test_y_points_up(renderer: Renderer) -> None:
+    empty = empty_table(renderer)
+    low, high = (
+        centroid(changed(renderer.frame(Picture(balls=[(0.5, y)], paddles=PADDLE)), empty)) for y in (0.3, 0.8)
+    )
+    assert low[1] - high[1] == pytest.approx(0.5 * renderer.projection.scale, abs=0.3)
+    assert low[0] == pytest.approx(high[0], abs=0.1)
+
+
+def test_every_ball_in_play_is_drawn_and_no_other(renderer: Renderer) -> None:
+    points = [(0.5, 0.7), (0.5, 1.2), (0.8, 0.3)]
+    frame = renderer.frame(Picture(balls=points, paddles=PADDLE, alive=[True, False, True]))
+    assert (frame == renderer.frame(Picture(balls=points[::2], paddles=PADDLE))).all()
+    for point, drawn in zip(points, (True, False, True), strict=True):
+        assert (frame[distances(renderer, point) < 3] == ball_color(renderer)).all() == drawn
+
+
+@pytest.mark.parametrize("point", [(-1.0, 0.5), (0.5, -0.4), (1e9, 1e9), (-1e12, 3.0), (0.5, 1e15)])
+def test_a_ball_outside_the_picture_is_not_seen(renderer: Renderer, point: tuple[float, float]) -> None:
+    assert (renderer.frame(Picture(balls=[point], paddles=PADDLE)) == empty_table(renderer)).all()
+
+
+def test_a_ball_half_outside_is_cut_at_the_border() -> None:
+    renderer = Renderer(Scene(ball=Ball(radius=0.1), elements=(Wall((0, 0), (1, 0)), Wall((0, 1), (1, 1)))), 200, 200)
+    for pixel in ((0, 100), (200, 100), (100, 0), (100, 200), (0, 0), (200, 200)):
+        point = renderer.projection.to_world(pixel)
+        frame = renderer.frame(Picture(balls=[point]))
+        assert (frame[distances(renderer, point) < 15] == (255, 252, 240)).all()
+
+
+@pytest.mark.parametrize(("width", "height"), [*SIZES, (800, 1120)])
+def test_the_point_ball_is_a_dot_one_can_see(width: int | None, height: int | None) -> None:
+    scene = Scene(elements=(Wall((0, 0), (1, 0)), Wall((0, 1.4), (1, 1.4))))
+    renderer = Renderer(scene, width, height)
+    empty = renderer.frame(Picture(balls=()))
+    for point in random_points(20):
+        difference = changed(renderer.frame(Picture(balls=[point])), empty)
+        assert (difference > 300).sum() >= 4
+        away = distances(renderer, point)
+        assert difference[away > 8].max() == 0
+
+
+def test_a_paddle_is_as_long_and_thick_as_the_scene_says(renderer: Renderer) -> None:
+    scale = renderer.projection.scale
+    for x in np.linspace(0.1, 0.9, 17):
+        frame = renderer.frame(Picture(balls=(), paddles=[(x, 0.08)]))
+        other = renderer.frame(Picture(balls=(), paddles=[(0.9 if x < 0.5 else 0.1, 0.08)]))
+        covered = changed(frame, other) > 100
+        column, row = renderer.projection.to_pixels((x, 0.08))
+        near = np.abs(np.arange(400) + 0.5 - column) < 0.13 * scale
+        covered &= near
+        rows, columns = np.nonzero(covered)
+        assert np.ptp(columns) + 1 == pytest.approx(2 * 0.112 * scale, abs=2.0)
+        assert np.ptp(rows) + 1 == pytest.approx(2 * 0.012 * scale, abs=2.0)
+        assert columns.mean() + 0.5 == pytest.approx(column, abs=0.5)
+        assert rows.mean() + 0.5 == pytest.approx(row, abs=0.5)
+
+
+def test_a_paddle_lies_along_its_rail() -> None:
+    paddle = Paddle((0.2, 0.2), (0.8, 0.8), half_width=0.15, radius=0.02, max_speed=1.0)
+    renderer = Renderer(Scene(elements=(Wall((0, 0), (1, 0)), Wall((0, 1), (1, 1)), paddle)))
+    color = renderer.frame(Picture(balls=(), paddles=[(0.5, 0.5)]))[tuple(_at(renderer, (0.5, 0.5)))].tolist()
+    frame = renderer.frame(Picture(balls=(), paddles=[(0.4, 0.4)]))
+    for along, across, covered in ((0.14, 0, True), (-0.14, 0, True), (0.2, 0, False), (0, 0.1, False), (0, 0, True)):
+        point = (0.4 + (along - across) / 2**0.5, 0.4 + (along + across) / 2**0.5)
+        assert (frame[tuple(_at(renderer, point))].tolist() == color) == covered, (along, across)
+
+
+def _at(renderer: Renderer, point: tuple[float, float]) -> tuple[int, int]:
+    x, y = renderer.projection.to_pixels(point)
+    return int(y), int(x)
+
+
+def test_all_but_the_moving_parts_stays_the_same(renderer: Renderer) -> None:
+    first = renderer.frame(Picture(balls=[(0.3, 0.7)], paddles=[(0.3, 0.08)], score=1))
+    second = renderer.frame(Picture(balls=[(0.8, 1.2)], paddles=[(0.7, 0.08)], score=1))
+    difference = changed(first, second)
+    scale = renderer.projection.scale
+    for point, reach in (((0.3, 0.7), 0.04), ((0.8, 1.2), 0.04), ((0.3, 0.08), 0.115), ((0.7, 0.08), 0.115)):
+        here = distances(renderer, point) < reach * scale + 3
+        assert difference[here].max() > 100
+        difference[here] = 0
+    assert (difference == 0).all()
+
+
+def test_edges_are_smooth() -> None:
+    scene = Scene(ball=Ball(radius=0.1), elements=(Wall((0.1, 0.1), (0.9, 0.6)), Wall((0, 0), (1, 0))))
+    renderer = Renderer(scene, height=300)
+    frame = renderer.frame(Picture(balls=[(0.3, 0.5)]))
+    for (x, y), kind in (((0.5, 0.35), "wall"), ((0.3, 0.4), "ball")):
+        row, column = _at(renderer, (x, y))
+        strip = frame[row - 12 : row + 12, column - 12 : column + 12, 0].astype(int)
+        low, high = strip.min(), strip.max()
+        between = ((strip > low + 15) & (strip < high - 15)).sum()
+        shades = len(np.unique(strip))
+        assert high - low > 60, kind
+        assert between >= 24, kind  # at least a pixel in each column of the edge
+        assert shades > 10, kind
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+@pytest.mark.parametrize("name", [name for name in INDEX if name != "paddle"])
+def test_what_is_struck_lights_up_and_nothing_else(name: str, width: int | None, height: int | None) -> None:
+    renderer = Renderer(TABLE, width, height)
+    calm = empty_table(renderer)
+    lit = renderer.frame(Picture(balls=(), paddles=PADDLE, hits=hits_on(name)))
+    difference = changed(lit, calm)
+    x0, y0, x1, y1 = TABLE.elements[INDEX[name]].bounds
+    (left, top), (right, bottom) = renderer.projection.to_pixels([(x0, y1), (x1, y0)])
+    reach = 0.06 * renderer.projection.scale + 4
+    columns, rows = np.arange(difference.shape[1]) + 0.5, np.arange(difference.shape[0])[:, None] + 0.5
+    near = (columns > left - reach) & (columns < right + reach) & (rows > top - reach) & (rows < bottom + reach)
+    assert difference[near].max() > 80
+    assert difference[~near].max() == 0
+    assert lit.astype(int).sum() > calm.astype(int).sum()  # brighter
+    assert (empty_table(renderer) == calm).all()  # and it goes out again
+
+
+def test_a_struck_paddle_lights_up(renderer: Renderer) -> None:
+    calm = empty_table(renderer)
+    lit = renderer.frame(Picture(balls=(), paddles=PADDLE, hits=hits_on("paddle")))
+    at_paddle = distances(renderer, PADDLE[0])
+    assert lit[at_paddle < 3].sum() > calm[at_paddle < 3].sum()
+    assert changed(lit, calm)[at_paddle > 0.15 * renderer.projection.scale].max() == 0
+
+
+def test_what_adds_energy_looks_different(renderer: Renderer) -> None:
+    frame = empty_table(renderer)
+    lively, post = (frame[distances(renderer, c) < 0.06 * renderer.projection.scale] for c in ((0.25, 1), (0.75, 1)))
+    assert lively[:, 0].mean() > 1.5 * lively[:, 2].mean()
+    assert post[:, 2].mean() > 1.2 * post[:, 0].mean()
+
+
+@pytest.mark.parametrize(("width", "height"), [*SIZES, (84, 600), (600, 84)])
+@pytest.mark.parametrize("score", [0, 7, -0.5, 1234.5, 1e6, 1e20, -1e300])
+def test_the_score_is_printed_whole_inside_the_field(width: int | None, height: int | None, score: float) -> None:
+    renderer = Renderer(TABLE, width, height)
+    inked = changed(renderer.frame(Picture(balls=(), paddles=PADDLE, score=score)), empty_table(renderer)) > 0
+    (left, top), (right, bottom) = renderer.projection.to_pixels([(0.0, 1.4), (1.0, 0.0)])
+    rows, columns = np.nonzero(inked)
+    assert left < columns.min()
+    assert columns.max() + 1 < right
+    assert top < rows.min()
+    assert rows.max() + 1 < top + 0.2 * max(bottom - top, 84)
+
+
+def test_other_scores_give_other_pictures(renderer: Renderer) -> None:
+    scores = [None, 0, 1, 12, 21, 0.5, -0.5, 1000, 10000]
+    frames = {renderer.frame(Picture(balls=(), paddles=PADDLE, score=score)).tobytes() for score in scores}
+    assert len(frames) == len(scores)
+
+
+def test_no_zero_has_a_sign(renderer: Renderer) -> None:
+    zeros = [renderer.frame(Picture(balls=(), paddles=PADDLE, score=zero)) for zero in (0, 0.0, -0.0, np.float32(0))]
+    assert all((zero == zeros[0]).all() for zero in zeros)
+
+
+def busy_picture(i: int) -> Picture:
+    return Picture(
+        balls=random_points(3, seed=i), paddles=[(0.1 + 0.1 * (i % 9), 0.08)], hits=np.arange(9) % 3 == i % 3, score=i
+    )
+
+
+def test_the_same_picture_gives_the_same_bytes_whatever_was_drawn_before() -> None:
+    first, second = Renderer(TABLE, 256, 384), Renderer(TABLE, 256, 384)
+    forward = [first.frame(busy_picture(i)).tobytes() for i in range(20)]
+    backward = [second.frame(busy_picture(i)).tobytes() for i in reversed(range(20))]
+    assert forward == backward[::-1]
+    assert len(set(forward)) == 20
+
+
+def test_another_process_gives_the_same_bytes() -> None:
+    program = (
+        "import hashlib; from pixel_scenes import TABLE; from test_render_frame import busy_picture;"
+        "from bounce_env.render import Renderer;"
+        "print(hashlib.sha256(Renderer(TABLE).frame(busy_picture(5))).hexdigest())"
+    )
+    paths = [path for path in sys.path if path]
+    answer = subprocess.run(
+        [sys.executable, "-c", f"import sys; sys.path[:0] = {paths!r}; {program}"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert answer.stdout.strip() == hashlib.sha256(Renderer(TABLE).frame(busy_picture(5))).hexdigest()
+
+
+def test_bands_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    picture = busy_picture(1)
+    banded = Renderer(TABLE, 256, 384).frame(picture)
+    monkeypatch.setattr(painter, "_BAND", 10_000)
+    assert (Renderer(TABLE, 256, 384).frame(picture) == banded).all()
+
+
+@pytest.mark.parametrize("name", builtin_scenes())
+@pytest.mark.parametrize(("width", "height"), [*SIZES, (1, 1), (2, 300), (300, 2)])
+def test_built_in_scenes_can_be_drawn_at_any_size(name: str, width: int | None, height: int | None) -> None:
+    scene = load_scene(name)
+    renderer = Renderer(scene, width, height)
+    paddles = [e.rail_start for e in scene.elements if isinstance(e, Paddle)]
+    x0, y0, x1, y1 = scene.bounds
+    center = ((x0 + x1) / 2, (y0 + y1) / 2)
+    frame = renderer.frame(Picture([center], paddles, hits=np.ones(len(scene.elements)), score=123.0))
+    assert frame.shape == (renderer.projection.height, renderer.projection.width, 3)
+    assert frame.max() > 200
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "message"),
+    [
+        ("balls", [0.5, 0.5], r"balls has shape \(2,\): must be \(k, 2\)"),
+        ("balls", [(0.5, np.nan)], r"balls = .*nan.*finite"),
+        ("paddles", (), r"paddles has shape \(0, 2\): must be \(1, 2\)"),
+        ("paddles", [(0.5, np.inf)], r"paddles = .*inf.*finite"),
+        ("alive", [True], r"alive has shape \(1,\): must be \(2,\)"),
+        ("hits", [0, 1], r"hits has shape \(2,\): must be \(9,\)"),
+        ("score", np.nan, "score = nan: must be None or finite"),
+    ],
+)
+def test_a_bad_picture_names_the_field(renderer: Renderer, field: str, value: object, message: str) -> None:
+    good = {"balls": [(0.5, 0.5), (0.6, 0.6)], "paddles": PADDLE}
+    with pytest.raises(ValueError, match=message):
+        renderer.frame(Picture(**{**good, field: value}))

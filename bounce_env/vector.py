@@ -76,6 +76,9 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         self._batch = Batch(game, self.num_envs, autoreset=_AUTORESET[mode], num_threads=int(num_threads))
         self._renderer: Renderer | None = None
         self._seeded = np.zeros(self.num_envs, np.bool_)
+        self._begun = False
+        self._every = np.ones(self.num_envs, np.bool_)
+        self._every.flags.writeable = False
         self._ended = np.ones(self.num_envs, np.bool_)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -107,11 +110,11 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             raise gym.error.ResetNeeded(
                 f'worlds {finished} have ended: reset(options={{"reset_mask": ...}}) them first'
             )
-        if not self._seeded.all():
+        if not self._begun:
             raise gym.error.ResetNeeded("call reset() before step()")
         ended = self._batch.step(np.asarray(actions))
         r = self._batch.results
-        info = self._info(np.ones(self.num_envs, np.bool_))
+        info = self._info(self._every)
         if ended:
             self._tell_ends(info, r.terminated | r.truncated)
         if self._mode == AutoresetMode.DISABLED:
@@ -157,6 +160,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         for w, generator in generators.items():
             self._batch.seed(w, world_seed(generator))
         self._seeded |= mask
+        self._begun = bool(self._seeded.all())
 
     def _observations(self) -> Observations:
         observations = self._batch.results.observations

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from bounce_env.engine.jit import kernel
 from bounce_env.engine.layout import Array, State, Tables, new_state
 from bounce_env.engine.view import view
-from bounce_env.games.episode import END_REASONS, EPISODE, FPS, Results, new_results
+from bounce_env.games.episode import END_REASONS, EPISODE, Results, bind, new_results
 from bounce_env.scene import Scene
 
 Mask = npt.NDArray[np.bool_]
@@ -63,11 +63,12 @@ class Batch:
         self.episodes: Array = np.zeros(worlds, EPISODE)
         self.results: Results = new_results(worlds, len(game.observation_high))
         self._start = np.full((worlds, 4), np.nan)
-        self._borders = np.linspace(0, worlds, min(num_threads, worlds) + 1).astype(int)
+        self._borders = np.linspace(0, worlds, min(num_threads, worlds) + 1).astype(int).tolist()
         self._threads: ThreadPoolExecutor | None = None
+        self._handle: Any = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_threads": None}
+        return {**self.__dict__, "_threads": None, "_handle": None}
 
     def seed(self, world: int, seed: np.uint64) -> None:
         """Let the stream of episodes of a world begin anew from `seed`."""
@@ -76,9 +77,15 @@ class Batch:
 
     def reset(self, mask: Mask, start: npt.NDArray[np.float64] | None = None) -> None:
         """Begin the next episode in the worlds of `mask`; `start` (worlds, 4): x, y, vx, vy, NaN for the seed's own."""
-        game, r = self.game, self.results
-        begin = self._start if start is None else start
-        game.reset_worlds(self.state, game.tables, game.rules, self.episodes, begin, mask, r)
+        self._start[:] = np.nan if start is None else start
+        self.game.reset_worlds(self._bound(), mask)
+        self._start[:] = np.nan
+
+    def _bound(self) -> Any:
+        if self._handle is None:
+            game = self.game
+            self._handle = bind(self.state, game.tables, game.rules, self.episodes, self._start, self.results)
+        return self._handle
 
     def step(self, actions: Array) -> int:
         """One step of every world; returns how many episodes ended.
@@ -90,17 +97,12 @@ class Batch:
         speeds = self._checked(np.asarray(actions))
         if not all_finite(speeds):
             self._refuse(speeds)
-        game = self.game
-        step = partial(
-            game.step_worlds,
-            self.state, game.tables, game.rules, self.episodes, self._start, speeds, self.results, self.autoreset,
-        )  # fmt: skip
-        slices = list(zip(self._borders[:-1].tolist(), self._borders[1:].tolist(), strict=True))
-        if len(slices) == 1:
+        step = partial(self.game.step_worlds, self._bound(), speeds, self.autoreset)
+        if len(self._borders) == 2:
             return step(0, self.worlds)
         if self._threads is None:
-            self._threads = ThreadPoolExecutor(len(slices))
-        return sum(self._threads.map(lambda part: step(*part), slices))
+            self._threads = ThreadPoolExecutor(len(self._borders) - 1)
+        return sum(self._threads.map(step, self._borders[:-1], self._borders[1:]))
 
     def _checked(self, actions: Array) -> Array:
         """The actions as (worlds,) numbers for the kernel, which refuses those that are not finite itself."""
@@ -124,13 +126,16 @@ class Batch:
     def end_info(self) -> dict[str, Array]:
         """What is said of the episodes that ended in the last step, (worlds,) each; 0 or None where none did."""
         books = self.results.ended
+        reasons = np.full(self.worlds, None, object)
+        ended = np.flatnonzero(books["end"])
+        reasons[ended] = _END_REASONS[books["end"][ended]]
         return {
-            "end_reason": _END_REASONS[books["end"]],
+            "end_reason": reasons,
             "points_bumpers": books["score"].copy(),
             "bounces": books["bounces"].copy(),
             "touches": books["touches"].copy(),
             "speed_capped": books["speed_capped"].copy(),
-            "game_seconds": books["frames"] / FPS,
+            "game_seconds": books["seconds"].copy(),
         }
 
     def view(self, world: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

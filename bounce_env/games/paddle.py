@@ -25,7 +25,6 @@ from bounce_env.games.episode import (
     RUNNING,
     SAME_STEP,
     TIME_LIMIT,
-    Results,
     begin_episode,
     borrow_results,
     close_books,
@@ -196,7 +195,8 @@ def play(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, ac
     resume(state, w)
     frames = 1 if rules.repeat > 0.0 else rules.frame_skip
     code = DONE
-    for _ in range(0, rules.frame_skip, frames):
+    last = episode.frames + rules.frame_skip
+    while episode.frames < last:
         if rules.repeat == 0.0 or uniform(episode.seed, STICKY_ACTIONS, episode.frames) >= rules.repeat:
             episode.last_action = action
         move(state, tables, state.paddles, tables.rails, w, episode.last_action)
@@ -238,10 +238,10 @@ def count_points(state: State, rules: Rules, episode: Any, w: int) -> float:
 
 
 @kernel
-def reset_worlds(
-    state: State, tables: Tables, rules: Rules, episodes: Array, start: Array, mask: Array, results: Results
-) -> None:
-    """Begin an episode in every world that `mask` names; `start` (worlds, 4) holds x, y, vx, vy, NaN for the seed's."""
+def reset_worlds(handle: Any, mask: Array) -> None:
+    """Begin an episode in every world that `mask` names, launched as `handle.start` says."""
+    state, tables, episodes = borrow_state(handle.state), borrow_tables(handle.tables), borrow(handle.episodes)
+    rules, results, start = borrow_rules(handle.rules), borrow_results(handle.results), borrow(handle.start)
     for w in range(mask.shape[0]):
         if mask[w]:
             begin(state, tables, rules, episodes, w, start)
@@ -252,25 +252,14 @@ def reset_worlds(
 
 
 @kernel
-def step_worlds(
-    state: State,
-    tables: Tables,
-    rules: Rules,
-    episodes: Array,
-    start: Array,
-    actions: Array,
-    results: Results,
-    autoreset: int,
-    first: int,
-    last: int,
-) -> int:
+def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: int) -> int:
     """One step of worlds `first` to `last` - 1, with the autoreset mode's resets; returns how many episodes ended.
 
-    actions: (worlds,) float64, clipped to [-1, 1]. A world whose episode has ended is reset in place of a step (NEXT_STEP), was
-    reset at its end (SAME_STEP), or must have been reset by the caller (DISABLED).
+    actions: (worlds,) float64, clipped to [-1, 1]. A world whose episode has ended is reset in place of a step
+    (NEXT_STEP), was reset at its end (SAME_STEP), or must have been reset by the caller (DISABLED).
     """
-    state, tables, episodes = borrow_state(state), borrow_tables(tables), borrow(episodes)
-    rules, results = borrow_rules(rules), borrow_results(results)
+    state, tables, episodes = borrow_state(handle.state), borrow_tables(handle.tables), borrow(handle.episodes)
+    rules, results, start = borrow_rules(handle.rules), borrow_results(handle.results), borrow(handle.start)
     ended = 0
     for w in range(first, last):
         if autoreset == NEXT_STEP and episodes[w].end != RUNNING:

@@ -18,8 +18,8 @@ Floats = npt.NDArray[np.float64]
 Player = Callable[[npt.NDArray[np.float32]], npt.NDArray[Any]]
 """From observations (n, size) to actions: (n, 1) float32, or (n,) whole numbers where the actions are discrete."""
 
-# A ball that has bounced so often without landing (no gravity) is followed instead.
 MAX_BOUNCES = 64
+"""A ball that has bounced so often without landing never does."""
 
 
 @dataclass(frozen=True)
@@ -90,19 +90,18 @@ class Table:
 def landing(table: Table, x: Floats, y: Floats, vx: Floats, vy: Floats) -> Floats:
     """x [m] of the balls' centres, (n,), when they come down to the paddle's height; bumpers and kicks are ignored.
 
-    Exact: parabolas from wall to wall, with the law of the bounce at each. A ball below that height, which cannot land any
-    more, gives its present x. x, y [m] and vx, vy [m/s]: (n,).
+    Exact: parabolas from wall to wall, with the law of the bounce at each. A ball that does not land (it is below that
+    height, or bounces on and on without gravity) gives its present x. x, y [m] and vx, vy [m/s]: (n,).
     """
+    now = x
     x, y, vx, vy = (np.array(a, np.float64) for a in (x, y, vx, vy))
-    flying = np.arange(len(x))
+    flying = np.flatnonzero((y >= table.contact) | np.isfinite(time_to_land(table, x, y, vx, vy)))
     for _ in range(MAX_BOUNCES):
         state = x[flying], y[flying], vx[flying], vy[flying]
         times = np.stack([time_to_land(table, *state), time_to_top(table, *state), time_to_side(table, *state)])
         first, t = times.argmin(axis=0), times.min(axis=0)
-        moving = np.isfinite(t)
-        flying, first, t = flying[moving], first[moving], t[moving]
-        if not len(flying):
-            break
+        x[flying[t == np.inf]] = now[flying[t == np.inf]]
+        flying, first, t = flying[t < np.inf], first[t < np.inf], t[t < np.inf]
         x[flying] += vx[flying] * t
         y[flying] += (vy[flying] - table.gravity * t / 2.0) * t
         vy[flying] -= table.gravity * t
@@ -112,6 +111,9 @@ def landing(table: Table, x: Floats, y: Floats, vx: Floats, vy: Floats) -> Float
         y[top] = table.top
         vx[top], vy[top] = table.top_bounce[1] * vx[top], -table.top_bounce[0] * vy[top]
         flying = flying[first != 0]
+        if not len(flying):
+            break
+    x[flying] = now[flying]
     return x
 
 

@@ -1,4 +1,4 @@
-"""Training configs: YAML in the RL Zoo's format, one entry per environment id, checked strictly; nothing is evaluated."""
+"""Training configs: YAML in the RL Zoo's format, one entry per environment id; checked strictly, never evaluated."""
 
 import math
 from collections.abc import Callable, Hashable, Mapping
@@ -13,6 +13,9 @@ from agents.command import Refused
 from bounce_env.scene.fields import Allowed
 
 Model = TypeVar("Model", bound=BaseModel)
+
+LARGEST_SEED = 2**32 - 1
+"""NumPy's global generator, which SB3 seeds, takes no larger one."""
 
 
 def _number(value: Any) -> float:
@@ -35,6 +38,12 @@ def _count(value: Any) -> int:
     if _number(value) < 1 or value != int(value):
         raise ValueError
     return int(value)
+
+
+def _seed(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= LARGEST_SEED:
+        raise ValueError
+    return value
 
 
 def _layers(value: Any) -> list[int] | dict[str, list[int]]:
@@ -60,6 +69,7 @@ def _flag(value: Any) -> bool:
 
 # What a value may be, and the words that an error says it with. YAML 1.1 reads 1e-3 as text, hence the spelling.
 Count = Annotated[int, Allowed("a whole number >= 1 (a large one may be written 1.0e+6)", _count)]
+Seed = Annotated[int, Allowed(f"a whole number from 0 to {LARGEST_SEED}", _seed)]
 Number = Annotated[float, Allowed("a number", _number)]
 Positive = Annotated[float, Allowed("a number > 0", _where(lambda x: x > 0.0))]
 NotNegative = Annotated[float, Allowed("a number >= 0", _where(lambda x: x >= 0.0))]
@@ -68,9 +78,7 @@ Flag = Annotated[bool, Allowed("true or false", _flag)]
 Schedule = Annotated[
     float | str, Allowed("a number > 0 such as 1.0e-3, or lin_1e-3 to fall linearly from there to 0", _schedule)
 ]
-Layers = Annotated[
-    Any, Allowed("a list of whole numbers >= 1, or {pi: such a list, vf: such a list}", _layers)
-]
+Layers = Annotated[Any, Allowed("a list of whole numbers >= 1, or {pi: such a list, vf: such a list}", _layers)]
 
 
 class Strict(BaseModel):
@@ -144,7 +152,7 @@ class _Loader(yaml.SafeLoader):
 def read_yaml(path: Path) -> dict[str, Any]:
     """The mapping in a YAML file; raises Refused, naming file and line, where there is none."""
     try:
-        data = yaml.load(path.read_bytes(), _Loader)  # noqa: S506 (a SafeLoader)
+        data = yaml.load(path.read_bytes(), _Loader)
     except OSError as error:
         raise Refused(f"{path}: cannot be read: {error.strerror}") from None
     except (yaml.YAMLError, UnicodeDecodeError) as error:
@@ -154,15 +162,16 @@ def read_yaml(path: Path) -> dict[str, Any]:
     return data
 
 
-def load_config(path: Path, env_id: str) -> Hyperparameters:
-    """The entry of `env_id` in a config file.
+def load_config(path: Path, env_id: str, overrides: Mapping[str, Any]) -> Hyperparameters:
+    """The entry of `env_id` in a config file; `overrides` take the place of what it says.
 
     Raises Refused: one line for each thing that is wrong, with file, id, key, value and what is allowed.
     """
     data = read_yaml(path)
     if env_id not in data:
         raise Refused(f"{path}: has no entry {env_id!r}; it has {', '.join(map(str, data)) or 'none'}")
-    return checked(Hyperparameters, data[env_id], f"{path}: {env_id}")
+    entry = data[env_id]
+    return checked(Hyperparameters, {**entry, **overrides} if isinstance(entry, dict) else entry, f"{path}: {env_id}")
 
 
 def checked(model: type[Model], data: Any, where: str) -> Model:

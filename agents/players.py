@@ -1,6 +1,8 @@
 """Players by name: a run folder's trained agent, or a baseline."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from stable_baselines3 import PPO
 
@@ -9,7 +11,33 @@ from agents.command import Refused
 from agents.runs import open_run
 from agents.task import Task
 
+DEFAULT_ENV_ID = "Bounce/Paddle-v0"
+
 
 def trained(model: PPO, *, sampled: bool = False) -> Player:
     """A model that plays its best action (argmax), or samples one as it did in training."""
     return lambda observations: model.predict(observations, deterministic=not sampled)[0]
+
+
+def named(name: str, env_id: str | None, env_kwargs: Mapping[str, Any] | None) -> tuple[Task, dict[str, Player]]:
+    """What is played, and who plays it: `name` is a baseline or a run folder, which gives two players.
+
+    env_id, env_kwargs: None for what the run was trained on. Raises Refused for a name that is neither, and where the
+    trained agent cannot play what is asked.
+    """
+    if name in BASELINES:
+        task = Task(env_id or DEFAULT_ENV_ID, env_kwargs or {})
+        return task, {name: BASELINES[name](task)}
+    if not Path(name).is_dir():
+        raise Refused(f"{name!r}: must be a run folder, or one of {', '.join(BASELINES)}")
+    run = open_run(Path(name))
+    task = Task(
+        run.task.env_id if env_id is None else env_id, run.task.env_kwargs if env_kwargs is None else env_kwargs
+    )
+    model = run.load_model()
+    if (model.observation_space, model.action_space) != (task.observation_space, task.action_space):
+        raise Refused(
+            f"{name}: was trained on {model.observation_space} and {model.action_space}, "
+            f"but this environment has {task.observation_space} and {task.action_space}"
+        )
+    return task, {"trained": trained(model), "trained_sampled": trained(model, sampled=True)}

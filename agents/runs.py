@@ -16,14 +16,13 @@ import time
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import yaml
 from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import VecEnv
 
 from agents.command import Refused
-from agents.config import Count, Hyperparameters, Seed, Strict, checked, read_yaml
+from agents.config import Hyperparameters, Seed, Strict, checked, read_yaml
 from agents.files import replacing, write_text
 from agents.task import Task
 
@@ -64,24 +63,25 @@ class Run:
         return self.folder / "model.zip"
 
     def save_model(self, model: PPO) -> None:
-        """Replace the checkpoint."""
+        """Replace the checkpoint; it holds the hyperparameters, too (SB3 saves whatever a model has)."""
+        model.hyperparameters = self.hyperparameters.model_dump()
         with replacing(self.model) as unfinished:
             model.save(unfinished)
 
-    def load_model(self, env: VecEnv | None = None, **changes: Any) -> PPO:
-        """The newest checkpoint. Raises Refused if there is none, if it is damaged, or if it does not fit the config."""
+    def load_model(self, env: VecEnv | None = None) -> PPO:
+        """The newest checkpoint. Raises Refused if there is none, if it is damaged, or does not fit the config."""
         if not self.model.exists():
             raise Refused(f"{self.folder}: has no model.zip: it was stopped before the first checkpoint; start anew")
         try:
-            model = PPO.load(self.model, env=env, device="cpu", **changes)
+            model = PPO.load(self.model, env=env, device="cpu")
         except Exception as error:  # whatever SB3, torch, pickle and zip may raise on a damaged file
             raise Refused(f"{self.model}: cannot be loaded: {error}") from error
-        expected = self.hyperparameters.for_ppo()
-        for key in ("n_steps", "batch_size", "n_epochs", "gamma", "gae_lambda", "policy_kwargs", "ent_coef", "vf_coef"):
-            if getattr(model, key) != expected[key]:
+        trained = getattr(model, "hyperparameters", {})
+        for key, value in self.hyperparameters.model_dump().items():
+            if trained.get(key) != value:
                 raise Refused(
-                    f"{self.folder / 'config.yml'}: {key} = {expected[key]!r}, but model.zip was trained with "
-                    f"{getattr(model, key)!r}; restore the config, or start anew with --config"
+                    f"{self.folder / 'config.yml'}: {key} = {value!r}: must be {trained.get(key)!r}, with which "
+                    "model.zip was trained; restore it, or start anew with --config"
                 )
         return model
 
@@ -113,6 +113,4 @@ def open_run(folder: Path) -> Run:
     if set(data) != {origin.env_id}:
         raise Refused(f"{path}: must have the entries 'run' and {origin.env_id!r}; it has {', '.join(map(str, data))}")
     hyperparameters = checked(Hyperparameters, data[origin.env_id], f"{path}: {origin.env_id}")
-    return Run(
-        folder, Task(origin.env_id, hyperparameters.env_kwargs), hyperparameters, origin.seed, origin.versions
-    )
+    return Run(folder, Task(origin.env_id, hyperparameters.env_kwargs), hyperparameters, origin.seed, origin.versions)

@@ -14,10 +14,25 @@ from bounce_env.sb3 import BounceVecEnv
 
 ENV_IDS = tuple(entry.id for entry in ENTRIES)
 
+HELD_OUT = 10_000
+"""First seed of the episodes that evaluation plays; training takes its seeds from 2**32 on (`training_seed`)."""
+
+
+def training_seed(seed: int, steps: int) -> int:
+    """First environment seed of a training that begins, or goes on, after `steps` environment steps.
+
+    seed: of the run, >= 0. Each run has 2**32 seeds of its own, beyond those that evaluation uses; a resumed one goes
+    on in them, so that it does not meet the same episodes again.
+    """
+    return (seed + 1) * 2**32 + steps
+
 
 @dataclass(frozen=True)
 class Task:
-    """An environment. `env_kwargs` are JSON-able; raises Refused for an unknown id and for what the environment refuses."""
+    """An environment; `env_kwargs` are JSON-able.
+
+    Raises Refused for an unknown id, and for keyword arguments that the environment refuses.
+    """
 
     env_id: str
     env_kwargs: Mapping[str, Any] = field(default_factory=dict)
@@ -28,15 +43,20 @@ class Task:
         try:
             self.single().close()
             self.batch(1).close()
-        except (TypeError, ValueError, OSError) as error:
+        except (TypeError, ValueError) as error:
             raise Refused(f"{self.env_id}: env_kwargs = {dict(self.env_kwargs)}: {error}") from None
 
     @property
     def resolved_kwargs(self) -> dict[str, Any]:
         """The keyword arguments, with the defaults of the id and of its class."""
-        parameters = inspect.signature(load_env_creator(str(gym.spec(self.env_id).entry_point))).parameters
-        defaults = {name: p.default for name, p in parameters.items() if p.default is not p.empty}
-        return {**defaults, **gym.spec(self.env_id).kwargs, **self.env_kwargs}
+        spec = gym.spec(self.env_id)
+        parameters = inspect.signature(load_env_creator(str(spec.entry_point))).parameters
+        return {name: p.default for name, p in parameters.items()} | spec.kwargs | dict(self.env_kwargs)
+
+    @property
+    def observation_space(self) -> gym.Space[Any]:
+        """What a player sees."""
+        return self.single().observation_space
 
     @property
     def action_space(self) -> gym.Space[Any]:
@@ -48,10 +68,8 @@ class Task:
         return gym.make(self.env_id, render_mode=render_mode, **self.env_kwargs)
 
     def batch(self, worlds: int) -> gym.vector.VectorEnv[Any, Any, Any]:
-        """`worlds` environments, each reset in the step after its episode's end."""
-        return gym.make_vec(
-            self.env_id, num_envs=worlds, vectorization_mode="vector_entry_point", **self.env_kwargs
-        )
+        """`worlds` environments; each is reset in the step after the end of its episode."""
+        return gym.make_vec(self.env_id, num_envs=worlds, vectorization_mode="vector_entry_point", **self.env_kwargs)
 
     def for_sb3(self, worlds: int, seed: int) -> BounceVecEnv:
         """`worlds` environments to train in, with the seeds from `seed` on."""

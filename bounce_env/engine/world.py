@@ -96,6 +96,8 @@ class World:
         """Let `seconds` >= 0 pass, or up to `max_events` >= 1 events (then `status` is BUDGET, `time` is that of the
         last event, and the next call goes on from there). Sensor crossings and stops of parts are events, too.
 
+        All that happens to a ball at one instant is one event of the budget.
+
         Returns the ledger of this call if asked for: a structured array (fields: `engine.layout.LEDGER`), one row an
         event in order of time; design.md, "Ledger". Raises ValueError for arguments that are not allowed.
         """

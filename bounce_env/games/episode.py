@@ -5,7 +5,6 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 import numpy.typing as npt
-from numba.core import types as nb_types
 from numba.experimental import structref
 
 from bounce_env.engine.jit import Record, borrow, function, kernel
@@ -61,10 +60,10 @@ class _Parts(NamedTuple):
     results: Results
 
 
-@structref.register  # type: ignore[untyped-decorator]
-class _HandleType(nb_types.StructRef):  # type: ignore[misc]
+@structref.register
+class _HandleType(numba.types.StructRef):  # type: ignore[misc]
     def preprocess_fields(self, fields: Any) -> Any:
-        return tuple((name, nb_types.unliteral(kind)) for name, kind in fields)
+        return tuple((name, numba.types.unliteral(kind)) for name, kind in fields)
 
 
 class Handle(structref.StructRefProxy):  # type: ignore[misc]

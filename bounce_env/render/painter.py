@@ -11,11 +11,11 @@ from bounce_env.render.looks import FIELD_BOTTOM, FIELD_TOP, TEXT, TEXT_SHADOW, 
 
 Pixels = npt.NDArray[np.uint8]
 
-FINENESS = 4
+FINENESS = 8
 """Strokes are drawn this many times larger and scaled down, and a moving thing is placed to 1/FINENESS pixel."""
 
 _BAND = 64
-"""Rows of a picture that are drawn at a time, so that a large picture needs little memory for its FINENESS."""
+"""Rows of a look that are drawn at a time, so that a large one needs little memory for its FINENESS."""
 
 
 def surface_of(pixels: Pixels) -> pygame.Surface:
@@ -24,21 +24,22 @@ def surface_of(pixels: Pixels) -> pygame.Surface:
     return pygame.image.frombuffer(pixels.data, (width, height), "RGB")
 
 
-def still_picture(width: int, height: int, strokes: Look) -> Pixels:
-    """The field with `strokes` on it, (height, width, 3); what is clear lies beneath what is opaque."""
+def still_picture(width: int, height: int, looks: Sequence[Look]) -> Pixels:
+    """The field with `looks` on it, later ones above earlier ones, (height, width, 3)."""
     rows = np.linspace(FIELD_TOP, FIELD_BOTTOM, height).round().astype(np.uint8)
     pixels = np.repeat(rows[:, None, :], width, axis=1)
-    strokes = tuple(sorted(strokes, key=lambda stroke: stroke.color[3]))
-    _stamp(surface_of(pixels), _rasterised(strokes, pygame.Rect(0, 0, width, height)), (0, 0))
+    target = surface_of(pixels)
+    for look in looks:
+        Overlay(look).draw(target)
     return pixels
 
 
 class Overlay:
     """A look that lies on the picture at one place; drawn when it is first needed."""
 
-    def __init__(self, look: Look, width: int, height: int) -> None:
+    def __init__(self, look: Look) -> None:
         self._look = look
-        self._area = _area_of(look).clip(pygame.Rect(0, 0, width, height))
+        self._area = _area_of(look)
         self._image: pygame.Surface | None = None
 
     def draw(self, target: pygame.Surface) -> None:
@@ -62,7 +63,7 @@ class Sprite:
         left, top = self._area.left + column, self._area.top + row
         width, height = target.get_size()
         if not (-self._area.width < left < width and -self._area.height < top < height):
-            return  # pygame would refuse what lies very far outside
+            return  # pygame takes places modulo 2^32, and would draw what lies very far outside
         image = self._images.get((right, down))
         if image is None:
             moved = [_moved(stroke, right / FINENESS, down / FINENESS) for stroke in self._look]
@@ -139,8 +140,9 @@ def _draw_fine(fine: pygame.Surface, stroke: Stroke) -> None:
         pygame.draw.circle(fine, stroke.color, (round(x), round(y)), round(radius))
     length = math.hypot(x1 - x0, y1 - y0)
     if length > 0:
-        # A polygon covers the pixels of its corners, too: half a pixel less on each side keeps it as wide as the discs.
-        across, up = -(radius - 0.5) * (y1 - y0) / length, (radius - 0.5) * (x1 - x0) / length
-        corners = ((x0, y0, 1), (x1, y1, 1), (x1, y1, -1), (x0, y0, -1))
-        outline = [(math.floor(x + side * across), math.floor(y + side * up)) for x, y, side in corners]
+        nx, ny = (y0 - y1) / length, (x1 - x0) / length
+        # A polygon covers the pixels of its outline, too: on each side half a pixel's width, seen along the normal.
+        reach = radius - (abs(nx) + abs(ny)) / 2
+        corners = ((x0, y0, reach), (x1, y1, reach), (x1, y1, -reach), (x0, y0, -reach))
+        outline = [(math.floor(x + side * nx), math.floor(y + side * ny)) for x, y, side in corners]
         pygame.draw.polygon(fine, stroke.color, outline)

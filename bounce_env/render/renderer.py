@@ -9,7 +9,7 @@ from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.render.looks import ball_look, paddle_look, rail_look, still_look
 from bounce_env.render.picture import Picture
 from bounce_env.render.projection import Projection
-from bounce_env.scene import Paddle, Scene
+from bounce_env.scene import Paddle, Scene, Sensor
 
 
 class Renderer:
@@ -33,10 +33,8 @@ class Renderer:
         at_rest = [still_look(e, scene, self.projection, lit=False) for e in still.values()]
         self._painter = painter
         self._elements = len(scene.elements)
-        self._background = painter.still_picture(*size, tuple(stroke for look in (*rails, *at_rest) for stroke in look))
-        self._flashes = {
-            i: painter.Overlay(still_look(e, scene, self.projection, lit=True), *size) for i, e in still.items()
-        }
+        self._background = painter.still_picture(*size, [*rails, *at_rest])
+        self._flashes = {i: painter.Overlay(still_look(e, scene, self.projection, lit=True)) for i, e in still.items()}
         self._paddles = {
             i: tuple(painter.Sprite(paddle_look(e, self.projection, lit=lit)) for lit in (False, True))
             for i, e in paddles.items()
@@ -71,12 +69,17 @@ class Renderer:
 
 
 def _label_place(scene: Scene, projection: Projection) -> tuple[int, int, int, int]:
-    """Left, top, room to the right and text size, in pixels: the field's top left corner, inside its walls."""
-    x_min, y_min, x_max, y_max = scene.bounds
-    (left, top), (right, bottom) = projection.to_pixels([(x_min, y_max), (x_max, y_min)]).tolist()
+    """Left, top, room to the right and text size, in pixels: the top left corner inside of what bounces the ball.
+
+    Sensors do not count: a drain may be wider than the field.
+    """
+    boxes = [e.bounds for e in scene.elements if not isinstance(e, Sensor)] or [scene.bounds]
+    x_min, y_min, x_max, y_max = np.transpose(boxes)
+    corners = [(x_min.min(), y_max.max()), (x_max.max(), y_min.min())]
+    (left, top), (right, bottom) = projection.to_pixels(corners).tolist()
     inset = max(2, round(0.025 * min(projection.width, projection.height)))
     room = max(1, int(right - left) - 2 * inset)
-    return round(left) + inset, round(top) + inset // 2, room, max(11, round(0.06 * (bottom - top)))
+    return round(left) + inset, round(top) + inset // 2, room, max(11, round(0.075 * (bottom - top)))
 
 
 def _points(name: str, value: npt.ArrayLike, count: int | None = None) -> npt.NDArray[np.float64]:

@@ -12,7 +12,9 @@ from bounce_env.registration import ENTRIES
 
 PADDLE = "Bounce/Paddle-v0"
 MODES = ("NEXT_STEP", "SAME_STEP", "DISABLED")
-KINDS = [{"action": action, "repeat_action_probability": p} for action, p in product(("continuous", "discrete"), (0.0, 0.25))]
+KINDS = [
+    {"action": action, "repeat_action_probability": p} for action, p in product(("continuous", "discrete"), (0.0, 0.25))
+]
 VARIANTS = [(entry.id, kwargs) for entry in ENTRIES for kwargs in KINDS]
 
 
@@ -21,6 +23,11 @@ def name(value: object) -> str | None:
     if isinstance(value, dict):
         return f"{value['action']}-{'sticky' if value['repeat_action_probability'] else 'plain'}"
     return None
+
+
+def make_env() -> gym.Env:
+    """At the level of a module that imports little: a spawned worker finds it by its name."""
+    return gym.make(PADDLE, time_limit=1.0)
 
 
 def make_vec(num_envs: int, mode: str = "NEXT_STEP", **kwargs: Any) -> VectorEnv:

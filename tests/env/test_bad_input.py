@@ -74,7 +74,7 @@ def test_an_unknown_keyword_is_named():
 
 
 def test_a_scene_that_cannot_be_played_says_what_it_lacks():
-    with pytest.raises(ValueError, match="paddles = 0: must be exactly 1.*drains = 0.*max_speed"):
+    with pytest.raises(ValueError, match=r"paddles = 0: must be exactly 1.*drains = 0.*max_speed"):
         gym.make(PADDLE, scene="box")
 
 

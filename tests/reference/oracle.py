@@ -31,6 +31,9 @@ class Event(NamedTuple):
     y: Num
     vx: Num  # after the event
     vy: Num
+    before: Pair = (0, 0)  # of a bounce: velocity before, normal, velocity of the surface
+    normal: Pair = (0, 0)
+    surface: Pair = (0, 0)
 
 
 class Run(NamedTuple):
@@ -281,8 +284,8 @@ class Oracle:
             if not closing:
                 return
             _, index, surface, n = min(closing, key=lambda c: c[:2])
-            self.v = self.after(self.scene.elements[index], surface.velocity, n)
-            self.record(index, BOUNCE)
+            before, self.v = self.v, self.after(self.scene.elements[index], surface.velocity, n)
+            self.record(index, BOUNCE, before, n, surface.velocity)
         raise RuntimeError("the bounces at one instant do not come to an end")
 
     def normal(self, surface: Surface) -> Pair:
@@ -313,5 +316,5 @@ class Oracle:
         share = ((cap * cap - vn * vn) / dot(t, t)) ** self.number(0.5)
         return tuple(vn * n[k] + share * t[k] for k in (0, 1))
 
-    def record(self, index: int, kind: int) -> None:
-        self.events.append(Event(self.now, index, kind, *self.p, *self.v))
+    def record(self, index: int, kind: int, *bounce: Pair) -> None:
+        self.events.append(Event(self.now, index, kind, *self.p, *self.v, *bounce))

@@ -10,7 +10,7 @@ from bounce_env.engine.world import World
 
 TICKS = 60
 DT = 0.25  # long enough for several bounces in one tick
-SCENES = soak_count(40, 2000)
+SCENES = soak_count(40, 500)
 
 
 def started(case):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bounce_env.engine.world import World
-from bounce_env.scene import Ball, Bumper, Paddle, Scene, Wall
+from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall
 
 FLOOR = Wall((-100, 0), (100, 0), name="floor")
 
@@ -75,6 +75,32 @@ def test_right_corner_reverses_exactly(order, radius, off):
     assert len(rows) == 2
     assert tuple(world.velocity[0]) == (-0.75, -0.75)
     assert world.position[0] == pytest.approx((-2 * radius, -2 * radius - off), abs=1e-14)
+
+
+@pytest.mark.parametrize("second", [Wall((2, -9), (2, 9)), Bumper((2.25, 0.25), 0.25)])
+@pytest.mark.parametrize("velocity", [(1.0, -1.0), (1.0, -0.75), (0.75, -1.0)])
+@pytest.mark.parametrize("order", [1, -1])
+def test_two_hits_at_one_instant_come_fastest_first_and_ties_in_scene_order(order, velocity, second):
+    """A disc reaches the floor and, on its right, a wall or the side of a bumper at t = 1."""
+    elements = (Wall((-9, 0), (9, 0)), second)[::order]
+    scene = Scene(gravity=(0, 0), ball=Ball(radius=0.25), elements=elements)
+    vx, vy = velocity
+    rows = ledger_of(scene, (1.75 - vx, 0.25 - vy), velocity, 2.0)
+    floor = 0 if order == 1 else 1
+    fastest = floor if -vy > vx else 1 - floor
+    assert list(rows["element"]) == ([0, 1] if vx == -vy else [fastest, 1 - fastest])
+    assert list(rows["time"]) == [1.0, 1.0]
+    assert (rows["vx1"][-1], rows["vy1"][-1]) == (-vx, -vy)
+
+
+def test_sensor_on_which_the_ball_bounces():
+    """The centre touches the first line and turns back: no crossing. It passes the second at that instant."""
+    touched, passed = Sensor((-9, 0.25), (9, 0.25)), Sensor((0, -9), (0, 9))
+    scene = Scene(gravity=(0, 0), ball=Ball(radius=0.25), elements=(touched, passed, Wall((-9, 0), (9, 0))))
+    rows = ledger_of(scene, (-1, 1.25), (1, -1), 3.0)
+    assert list(rows["element"]) == [2, 1]
+    assert list(rows["kind"]) == [0, 3]
+    assert list(rows["time"]) == [1.0, 1.0]
 
 
 @pytest.mark.parametrize("n", [2, 4, 6])

@@ -1,5 +1,7 @@
 """The scene and the measures that the pixel tests share."""
 
+from functools import cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -29,6 +31,12 @@ PADDLE = ((0.5, 0.08),)
 """Where the paddle stands while something else is looked at."""
 
 INDEX = {element.name: i for i, element in enumerate(TABLE.elements)}
+
+
+@cache
+def table_renderer(width: int | None = 400, height: int | None = 560) -> Renderer:
+    """The one renderer of `TABLE` of this size: a frame leaves no trace in it, which has a test of its own."""
+    return Renderer(TABLE, width, height)
 
 
 def hits_on(*names: str) -> npt.NDArray[np.int64]:

@@ -27,6 +27,8 @@ def run(program: str, **variables: str) -> subprocess.CompletedProcess[str]:
 def test_drawing_needs_no_display_opens_none_and_says_nothing() -> None:
     done = run(
         """
+import os
+os.environ.pop("PYGAME_HIDE_SUPPORT_PROMPT", None)  # today's Gymnasium sets it, too
 frame = Renderer(scene, 84, 84).frame(Picture([(0.5, 0.5)], score=3))
 assert frame.max() > 200
 import pygame

@@ -105,6 +105,11 @@ def test_keys_are_handed_on_and_none_are_left(noise: Pixels) -> None:
     assert not pygame.event.peek(pygame.KEYDOWN)
     window.show(noise)
     assert not [event for event in window.events if event.type == pygame.KEYDOWN]
+    pygame.event.post(pygame.event.Event(pygame.QUIT))
+    window.show(noise)
+    assert pygame.QUIT in [event.type for event in window.events]
+    window.show(noise)
+    assert window.events == []
 
 
 def test_a_new_window_takes_the_place_of_the_one_before(noise: Pixels) -> None:

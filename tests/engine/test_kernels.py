@@ -1,0 +1,62 @@
+"""How kernels are compiled: cached on disk, keyed by all sources, one per set of features."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import bounce_env
+from bounce_env import Ball, Bumper, Scene, Wall, World
+from bounce_env.engine import world as world_module
+
+PACKAGE = Path(bounce_env.__file__).parent
+RUN = """
+from bounce_env import Scene, Wall, World
+from bounce_env.engine import world as m
+w = World(Scene(gravity=(0.0, 0.0), elements=(Wall((0.0, 0.0), (1.0, 0.0)),)))
+w.reset(position=(0.5, 1.0), velocity=(0.0, -1.0))
+w.advance(1.5)
+print(sum(m._advance.stats.cache_hits.values()), sum(m._advance.stats.cache_misses.values()))
+print(w.velocity[0, 1])
+"""
+
+
+def run_in(folder: Path) -> list[str]:
+    """Output of RUN with the copy of the package in `folder`."""
+    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", RUN], env=environment, cwd=folder, capture_output=True, text=True, check=True
+    )
+    return done.stdout.split()
+
+
+def test_second_process_compiles_nothing_and_an_edited_helper_is_noticed(tmp_path: Path) -> None:
+    """Numba itself looks at the file of the kernel alone; here an edit three modules away counts."""
+    shutil.copytree(PACKAGE, tmp_path / "bounce_env", ignore=shutil.ignore_patterns("__pycache__"))
+    assert run_in(tmp_path) == ["0", "1", "1.0"]
+    assert run_in(tmp_path) == ["1", "0", "1.0"]
+    law = tmp_path / "bounce_env" / "engine" / "law.py"
+    source = law.read_text()
+    assert source.count("away = -b * normal") == 1
+    law.write_text(source.replace("away = -b * normal", "away = -0.5 * b * normal"))
+    assert run_in(tmp_path) == ["0", "1", "0.5"]
+
+
+def test_scenes_of_one_feature_set_share_a_kernel() -> None:
+    """However many walls and bumpers: one signature. Without bumpers: another one, that has none of their code."""
+    walls = [Wall((0.0, 0.0), (1.0, 0.0)), Wall((0.0, 2.0), (1.0, 2.0)), Wall((-1.0, 0.0), (-1.0, 1.0))]
+    bumpers = [Bumper((5.0, 5.0), 0.1), Bumper((6.0, 5.0), 0.2)]
+
+    def signatures_after(elements: list[Wall | Bumper]) -> int:
+        world = World(Scene(gravity=(0.0, -1.0), ball=Ball(radius=0.1), elements=tuple(elements)))
+        world.reset(position=(0.5, 1.0), velocity=(0.0, 0.0))
+        world.advance(0.5)
+        assert np.isfinite(world.position).all()
+        return len(world_module._advance.signatures)  # type: ignore[attr-defined]
+
+    first = signatures_after([*walls[:1], *bumpers[:1]])
+    assert signatures_after([*walls, *bumpers]) == first
+    assert signatures_after([*bumpers]) == first + 1

@@ -59,21 +59,14 @@ def magnitude(gx: Feature, gy: Feature) -> float:
 
 
 @function
-def lowest(x: float, v: float, g: Feature, t: float) -> float:
-    """The smallest value [m] that one coordinate takes on during the next `t` seconds."""
+def swept(x: float, v: float, g: Feature, t: float) -> tuple[float, float]:
+    """The smallest and the largest value [m] that one coordinate takes on during the next `t` seconds."""
     end = moved(x, v, g, t)
-    least = min(x, end)
-    if g is not None and g > 0.0 and v < 0.0 and v + g * t > 0.0:
-        least = min(least, x - 0.5 * v * v / g)
-    return least
-
-
-@function
-def highest(x: float, v: float, g: Feature, t: float) -> float:
-    """The largest value [m] that one coordinate takes on during the next `t` seconds."""
-    if g is None:
-        return -lowest(-x, -v, None, t)
-    return -lowest(-x, -v, -g, t)
+    low, high = min(x, end), max(x, end)
+    if g is not None and v * g < 0.0 and abs(v) < abs(g) * t:
+        turn = x - 0.5 * v * v / g
+        low, high = min(low, turn), max(high, turn)
+    return low, high
 
 
 @function

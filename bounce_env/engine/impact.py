@@ -7,7 +7,7 @@ part's position and velocity, and the same functions serve. `reach` is the obsta
 
 import math
 
-from bounce_env.engine.flight import dot, highest, lowest, moved, sped
+from bounce_env.engine.flight import dot, moved, sped, swept
 from bounce_env.engine.jit import Feature, function
 from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
 
@@ -120,9 +120,9 @@ def passing(x: float, v: float, reach: float) -> tuple[float, float]:
     """The durations between which |x + v t| <= reach, as (from, to) with from >= 0; from > to if never."""
     if v == 0.0:
         return 0.0, math.inf if abs(x) <= reach else -1.0
-    if v < 0.0:
-        x, v = -x, -v
-    return max((-reach - x) / v, 0.0), (reach - x) / v
+    inverse = 1.0 / v
+    middle, half = -x * inverse, reach * abs(inverse)
+    return max(middle - half, 0.0), middle + half
 
 
 @function
@@ -170,7 +170,10 @@ def curved_circle_time(
 @function
 def near(x: float, v: float, g: float, t: float, reach: float) -> bool:
     """Whether x + v t + g t^2 / 2 comes within `reach` of 0 in the next `t` seconds; a `t` < 0 is never."""
-    return t >= 0.0 and lowest(x, v, g, t) <= reach and highest(x, v, g, t) >= -reach
+    if t < 0.0:
+        return False
+    low, high = swept(x, v, g, t)
+    return low <= reach and high >= -reach
 
 
 @function

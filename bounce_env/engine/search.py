@@ -7,7 +7,7 @@ a step ends.
 
 import math
 
-from bounce_env.engine.flight import dot, highest, lowest, moved, pull, sped, time_in_scene, touch_tolerance
+from bounce_env.engine.flight import dot, moved, pull, sped, swept, time_in_scene, touch_tolerance
 from bounce_env.engine.impact import capsule_time, circle_time, face_time, facing_time, falling_time
 from bounce_env.engine.instant import before, later, since
 from bounce_env.engine.jit import Feature, Record, Table, function
@@ -70,8 +70,8 @@ def first_circle(
     best, index = horizon, -1
     if circles is None:
         return best, index
-    left, right = lowest(ball.x, ball.vx, gx, horizon), highest(ball.x, ball.vx, gx, horizon)
-    below, above = lowest(ball.y, ball.vy, gy, horizon), highest(ball.y, ball.vy, gy, horizon)
+    left, right = swept(ball.x, ball.vx, gx, horizon)
+    below, above = swept(ball.y, ball.vy, gy, horizon)
     for i in range(count):
         circle = circles[scene, i]
         reach = circle.reach + ball.slack

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import soak_count
 
 from agents.baselines import BASELINES, Mover, Table, landing
 from agents.command import Refused
@@ -11,13 +12,12 @@ from agents.evaluate import play
 from agents.results import estimate
 from agents.task import Task
 from bounce_env import Ball, Bumper, Paddle, Scene, Sensor, Wall, World, load_scene
-from conftest import soak_count
 
 TASK = Task("Bounce/Paddle-v0")
 
 
 def empty_field(*, b: float, f: float, gravity: float, width: float = 1.0) -> Scene:
-    """The paddle's field as the predictor sees it: no bumper; in the paddle's place a sensor at the height of contact."""
+    """A field in which a ball bounces off all walls before it lands."""
     paddle = Paddle((0.2, 0.08), (width - 0.2, 0.08), half_width=0.05, radius=0.01, max_speed=1.0)
     sides = [Wall((x, -0.1), (x, 1.4), b=b, f=f) for x in (0.0, width)]
     top = Wall((0.0, 1.4), (width, 1.4), b=0.7, f=0.8)

@@ -189,7 +189,7 @@ def test_a_damaged_folder_is_refused(copy: Path, name: str, content: str | None,
 
 def test_a_model_of_other_origin_is_refused(copy: Path) -> None:
     PPO("MlpPolicy", Task(ENV_ID).for_sb3(16, 0), n_steps=32, batch_size=128).save(copy / "model.zip")
-    with pytest.raises(Refused, match="config.yml: n_timesteps = 2048"):
+    with pytest.raises(Refused, match=r"config\.yml: n_timesteps = 2048"):
         train(TrainOptions(resume=copy))
 
 

@@ -1,4 +1,4 @@
-"""How many steps a second `Bounce/Paddle-v0` makes in a batch on one thread, and pymunk stepping the same scene.
+"""How many steps a second `Bounce/Paddle-v0` makes on one thread, and pymunk stepping the same scene.
 
 Run `python -m tests.bench.versus_pymunk` for the table; both are measured in turns, so that noise hits both alike.
 pymunk does less: one step of its physics per step of the env, no observation, no reward, no reset.
@@ -12,8 +12,10 @@ import gymnasium as gym
 import numpy as np
 import pymunk
 
-import bounce_env
 from bounce_env import Bumper, Paddle, Wall, load_scene
+from bounce_env.games.batch import Batch
+from bounce_env.games.episode import NEXT_STEP
+from bounce_env.games.paddle import PaddleGame, PaddleOptions
 
 WORLDS = 1024
 STEP = 1.0 / 30.0
@@ -44,19 +46,35 @@ def pymunk_space() -> tuple[pymunk.Space, pymunk.Body]:
     return space, paddle_body
 
 
-def our_steps(seconds: float) -> Callable[[], float]:
-    """A function that measures our steps per second once."""
+def batch_steps(seconds: float) -> Callable[[], float]:
+    """A function that measures the steps per second of the native batch once: physics, rules, observation, resets."""
+    game = PaddleGame(PaddleOptions())
+    batch = Batch(game, WORLDS, autoreset=NEXT_STEP)
+    for w in range(WORLDS):
+        batch.seed(w, np.uint64(w))
+    batch.reset(np.ones(WORLDS, np.bool_))
+    actions = np.random.default_rng(0).uniform(-1.0, 1.0, (64, WORLDS))
+    return measured(batch.step, actions, seconds)
+
+
+def vector_steps(seconds: float) -> Callable[[], float]:
+    """A function that measures the steps per second of the Gymnasium vector env once: all that, and info."""
     envs = gym.make_vec("Bounce/Paddle-v0", num_envs=WORLDS, vectorization_mode="vector_entry_point", copy=False)
     envs.reset(seed=0)
     actions = np.random.default_rng(0).uniform(-1.0, 1.0, (64, WORLDS, 1)).astype(np.float32)
+    return measured(envs.step, actions, seconds)
+
+
+def measured(step: Callable[[np.ndarray], object], actions: np.ndarray, seconds: float) -> Callable[[], float]:
+    """A function that measures once, with what is compiled or warmed up behind it."""
     for k in range(200):
-        envs.step(actions[k % 64])
+        step(actions[k % 64])
 
     def measure() -> float:
         steps, begin = 0, time.perf_counter()
         while time.perf_counter() - begin < seconds:
             for k in range(64):
-                envs.step(actions[k])
+                step(actions[k])
             steps += 64 * WORLDS
         return steps / (time.perf_counter() - begin)
 
@@ -81,16 +99,17 @@ def pymunk_steps(seconds: float) -> Callable[[], float]:
     return measure
 
 
-def ratio(seconds: float = 0.5, rounds: int = 5) -> tuple[float, float, float]:
-    """Medians of ours, pymunk's, and of their ratio over `rounds` rounds of `seconds` each, measured in turns."""
-    ours, theirs = our_steps(seconds), pymunk_steps(seconds)
-    pairs = [(ours(), theirs()) for _ in range(rounds)]
-    a, b = zip(*pairs, strict=True)
-    return statistics.median(a), statistics.median(b), statistics.median(x / y for x, y in pairs)
+def compare(seconds: float = 0.3, rounds: int = 7) -> tuple[float, float, float]:
+    """Median steps per second of the batch, the vector env and pymunk, over rounds in which they take turns."""
+    measures = (batch_steps(seconds), vector_steps(seconds), pymunk_steps(seconds))
+    table = [[measure() for measure in measures] for _ in range(rounds)]
+    batch, vector, other = (statistics.median(column) for column in zip(*table, strict=True))
+    return batch, vector, other
 
 
 if __name__ == "__main__":
-    mine, other, times = ratio(seconds=2.0)
-    print(f"bounce_env {bounce_env.__name__}: {mine / 1e6:.2f} M steps/s in a batch of {WORLDS}, one thread")  # noqa: T201
-    print(f"pymunk {pymunk.version}: {other / 1e3:.1f} k steps/s, same scene, one step of its physics each")  # noqa: T201
-    print(f"ratio {times:.0f}")  # noqa: T201
+    batch, vector, other = compare(seconds=1.0)
+    print(f"{WORLDS} worlds of Bounce/Paddle-v0 on one thread, medians of one run:")  # noqa: T201
+    print(f"native batch            {batch / 1e6:6.2f} M steps/s  {batch / other:5.0f} x pymunk")  # noqa: T201
+    print(f"Gymnasium vector env    {vector / 1e6:6.2f} M steps/s  {vector / other:5.0f} x pymunk")  # noqa: T201
+    print(f"pymunk {pymunk.version}, one step  {other / 1e3:6.0f} k steps/s")  # noqa: T201

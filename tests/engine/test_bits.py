@@ -34,7 +34,7 @@ def test_any_partition_of_the_time_gives_the_same_ledger(name: str, place: tuple
     scene = load_scene(name)
     rng = np.random.default_rng(1)
     for _ in range(soak_count(5, 2000)):
-        start = (*place, *rng.uniform(-3.0, 3.0, 2).tolist())
+        start = (*place, *(rng.uniform(-3.0, 3.0, 2) * scene.bounds[2]).tolist())
         commands = rng.uniform(-1.5, 1.5, 16).tolist() if name == "paddle" else []
         whole = play(scene, start, 16, commands)
         assert len(whole[0]) > 0

@@ -75,7 +75,7 @@ def test_ids_carry_no_step_limit_and_string_entry_points():
 
 
 def test_metadata_belongs_to_the_instance():
-    slow, usual = gym.make("Bounce/Paddle-v0", frame_skip=6), gym.make("Bounce/Paddle-v0")
+    usual, slow = gym.make("Bounce/Paddle-v0"), gym.make("Bounce/Paddle-v0", frame_skip=6)
     assert (slow.unwrapped.metadata["render_fps"], usual.unwrapped.metadata["render_fps"]) == (10, 30)
     assert type(usual.unwrapped).metadata["render_fps"] == 30
 

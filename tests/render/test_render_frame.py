@@ -53,7 +53,7 @@ def test_the_ball_is_where_the_projection_puts_it(width: int | None, height: int
     renderer = table_renderer(width, height)
     empty = empty_table(renderer)
     radius = max(0.02 * renderer.projection.scale, 1.5)
-    for point in random_points(soak_count(50, 3000)):
+    for point in random_points(soak_count(50, 500)):
         frame = renderer.frame(Picture(balls=[point], paddles=PADDLE))
         away = distances(renderer, point)
         assert (frame[away < radius - 0.8] == ball_color(renderer)).all()
@@ -73,7 +73,7 @@ def test_a_ball_moves_by_its_share_of_a_pixel() -> None:
     # Two dark elements far away: only the field's slow gradient lies beneath the ball.
     empty = renderer.frame(Picture(balls=()))
     step = 0.3 / renderer.projection.scale
-    for i in range(soak_count(40, 1000)):
+    for i in range(soak_count(40, 400)):
         point = (0.4 + 0.37 * i * step % 0.3, 0.1 + i * step % 0.5)
         seen = centroid(changed(renderer.frame(Picture(balls=[point])), empty))
         # Half of 1/FINENESS from rounding the place, as much from the raster that draws it.

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
+from bounce_env.engine.layout import OUT
 from bounce_env.games.batch import Batch, Game
 from bounce_env.games.episode import DISABLED
 from bounce_env.games.paddle import PaddleGame, PaddleOptions
@@ -43,6 +44,7 @@ def picture_of(batch: Batch, world: int) -> Picture:
     return Picture(
         balls=balls[:, :2],
         paddles=paddles,
+        alive=batch.state.balls["status"][world] != OUT,
         hits=batch.state.hits[world, :elements],
         score=float(batch.episodes[world].score),
     )

@@ -70,7 +70,7 @@ def facing_time(
     if not behind and gap <= slack and abs(rate) <= ULPS_OF_SPEED * (abs(vx) + abs(vy)):
         rate = 0.0
     t = falling_time(gap, behind, rate, dot(gx, gy, nx, ny))
-    if t > horizon:
+    if t == math.inf or t > horizon:
         return math.inf
     along = moved(x, vx, gx, t) * ux + moved(y, vy, gy, t) * uy
     # The slack closes the joint between two walls for a ball of no radius; for a disc the end's circle takes over.

@@ -210,17 +210,46 @@ def command(state: State, tables: Tables, paddles: Table, rails: Table, w: int, 
     paddle, world = paddles[w, m], state.worlds[w]
     if velocity == paddle.command:
         return
-    rail = rails[world.scene, m]
-    paddle.offset = min(max(rail_offset(paddle, world.time_hi, world.time_lo), 0.0), rail.span)
-    paddle.hi, paddle.lo = world.time_hi, world.time_lo
-    paddle.command = velocity
-    set_off(paddle, rail)
+    set_off(paddle, rails[world.scene, m], world, velocity)
     replan_paddle(state, tables, state.zones, w, m)
 
 
 @function
-def set_off(paddle: Record, rail: Record) -> None:
-    """Start the commanded motion from the paddle's place: against a stop it stands, else the stop ahead is an event."""
+def command_unwatched(
+    world: Record, paddles: Table, rails: Table, zones: Table, w: int, m: int, velocity: float
+) -> bool:
+    """As `command`, where no ball is in the paddle's zone; otherwise it does nothing and returns False."""
+    if paddles is None or rails is None or zones is None:
+        return True
+    paddle = paddles[w, m]
+    if velocity == paddle.command:
+        return True
+    for k in range(zones.shape[1]):
+        if zones[w, k, m].inside:
+            return False
+    set_off(paddle, rails[world.scene, m], world, velocity)
+    return True
+
+
+@function
+def is_calm(balls: Table, paddles: Table, w: int, until_hi: float, until_lo: float) -> bool:
+    """Whether nothing happens in world `w` up to and including an instant."""
+    for k in range(balls.shape[1]):
+        if not before(until_hi, until_lo, balls[w, k].next_hi, balls[w, k].next_lo):
+            return False
+    if paddles is not None:
+        for m in range(paddles.shape[1]):
+            if not before(until_hi, until_lo, paddles[w, m].stop_hi, paddles[w, m].stop_lo):
+                return False
+    return True
+
+
+@function
+def set_off(paddle: Record, rail: Record, world: Record, velocity: float) -> None:
+    """Start a commanded motion from the paddle's place: against a stop it stands, else the stop ahead is an event."""
+    paddle.offset = min(max(rail_offset(paddle, world.time_hi, world.time_lo), 0.0), rail.span)
+    paddle.hi, paddle.lo = world.time_hi, world.time_lo
+    paddle.command = velocity
     room = rail.span - paddle.offset if paddle.command > 0.0 else paddle.offset
     paddle.velocity = paddle.command if room > 0.0 else 0.0
     paddle.stop_hi, paddle.stop_lo = math.inf, 0.0

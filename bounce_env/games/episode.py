@@ -47,6 +47,7 @@ class Results(NamedTuple):
     truncated: Array  # (worlds,) bool
     final_observations: Array  # (worlds, size) float32: of episodes that ended in this step, when reset in the same
     ended: Array  # (worlds,) BOOKS of the episodes that ended in this step
+    busy: Array  # (worlds,) int64: the kernel's list of worlds in which something happens
 
 
 class _Parts(NamedTuple):
@@ -96,6 +97,7 @@ def new_results(worlds: int, size: int) -> Results:
         truncated=np.zeros(worlds, np.bool_),
         final_observations=np.zeros((worlds, size), np.float32),
         ended=np.zeros(worlds, BOOKS),
+        busy=np.zeros(worlds, np.int64),
     )
 
 
@@ -109,6 +111,7 @@ def borrow_results(results: Results) -> Results:
         borrow(results.truncated),
         borrow(results.final_observations),
         borrow(results.ended),
+        borrow(results.busy),
     )
 
 

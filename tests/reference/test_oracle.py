@@ -49,9 +49,9 @@ def test_elastic_flight_conserves_energy_and_runs_backwards(radius):
 @pytest.mark.parametrize("seed", range(soak_count(4, 40)))
 def test_path_never_enters_an_obstacle(seed):
     case = table(seed, gravity=True, radius=0.02)
-    run = oracle(case.scene).run(case.position, case.velocity, mpf(3))
+    run = oracle(case.scene).run(case.position, case.velocity, mpf(60), max_events=12)
     bounces = [e for e in run.events if e.kind == BOUNCE]
-    assert len(bounces) >= 5
+    assert len(bounces) >= 4
     gx, gy = case.scene.gravity
     solid = [e for e in case.scene.elements if not isinstance(e, Sensor)]
     for e, following in pairwise(bounces):

@@ -5,7 +5,7 @@ import pytest
 from conftest import soak_count
 
 from bounce_env.render import Projection
-from bounce_env.render.projection import DEFAULT_HEIGHT, LARGEST_SIDE, LONGEST_SHAPE
+from bounce_env.render.projection import DEFAULT_HEIGHT, LARGEST_SIDE, LONGEST_SHAPE, MARGIN
 
 BOUNDS = (-0.5, 0.2, 0.5, 1.6)
 
@@ -48,7 +48,8 @@ def test_random_boxes_lie_inside_centred_and_undistorted() -> None:
         assert (pixels > 0).all()
         assert (pixels < (width, height)).all()
         assert np.allclose(pixels.mean(axis=0), (width / 2, height / 2))
-        assert max(np.ptp(pixels, axis=0) / (width, height)) > 0.5  # and fill the picture one way
+        extent = np.ptp(pixels, axis=0)
+        assert max((extent + 2 * MARGIN * extent.max()) / (width, height)) == pytest.approx(1.0)  # fills it one way
         points = rng.uniform(-1000, 1000, (5, 2))
         assert np.allclose(projection.to_world(projection.to_pixels(points)), points)
         moved = projection.to_pixels(points + np.array((1.0, 2.0))) - projection.to_pixels(points)

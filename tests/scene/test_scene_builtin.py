@@ -27,9 +27,7 @@ def test_they_load_from_a_zip(tmp_path):
     with zipfile.ZipFile(tmp_path / "bounce.zip", "w") as archive:
         for path in [*package.rglob("*.py"), *package.rglob("*.toml")]:
             archive.write(path, path.relative_to(package.parent))
-    code = (
-        "import bounce_env.scene as s; print(s.__file__, *map(s.load_scene, s.builtin_scenes()), sep='\\n')"
-    )
+    code = "import bounce_env.scene as s; print(s.__file__, *map(s.load_scene, s.builtin_scenes()), sep='\\n')"
     run = subprocess.run(
         [sys.executable, "-c", code],
         cwd=tmp_path,

@@ -255,8 +255,7 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         (
             f"[ball]\nradius = 1e-7\n{FLOOR}",
             "ball: radius = 1e-07",
-            "must be 0 or at least 1e-06 m, "
-            "in a scene whose longer side is 1 m and whose largest coordinate is 1 m",
+            "must be 0 or at least 1e-06 m, in a scene whose longer side is 1 m and whose largest coordinate is 1 m",
         ),
     ],
 )
@@ -265,12 +264,7 @@ def test_what_is_wrong_is_named(problems, text, where, message):
 
 
 def test_all_errors_of_a_file_are_reported(problems):
-    text = (
-        "gravity = [0, nan]\n"
-        + FLOOR
-        + "b = -1.0\ncolour = 3\n"
-        + element("bumper", f"{CENTER}\nradius = true")
-    )
+    text = "gravity = [0, nan]\n" + FLOOR + "b = -1.0\ncolour = 3\n" + element("bumper", f"{CENTER}\nradius = true")
     assert problems(text) == [
         f"mytable.toml: gravity = [0, nan]: must be {POINT}",
         f"mytable.toml: elements[0] (wall 'floor'): b = -1.0: must be {ZERO_OR_MORE}",
@@ -337,9 +331,7 @@ def test_a_source_that_is_neither_name_nor_path(source):
 def test_an_unknown_name_lists_the_built_in_scenes(name):
     with pytest.raises(SceneError) as caught:
         load_scene(name)
-    assert (
-        str(caught.value) == f"scene {name!r}: must be one of box, paddle, pegs, or the path of a .toml file"
-    )
+    assert str(caught.value) == f"scene {name!r}: must be one of box, paddle, pegs, or the path of a .toml file"
 
 
 @pytest.mark.parametrize("data", [None, 3, [], "paddle"])

@@ -27,9 +27,7 @@ FACTOR = st.floats(0.0, 10.0)
 POINT = st.tuples(st.floats(-100.0, 100.0), st.floats(-100.0, 100.0))
 SEGMENT = st.tuples(POINT, POINT).filter(lambda ends: abs(ends[0][0] - ends[1][0]) > 0.01)
 SURFACE = {"b": FACTOR, "f": st.floats(0.0, 1.0), "kick": FACTOR, "kick_threshold": FACTOR}
-NAME = st.text(
-    st.characters(exclude_categories=["C", "Z"]) | st.sampled_from(" \"'\\#=[]"), min_size=1, max_size=8
-)
+NAME = st.text(st.characters(exclude_categories=["C", "Z"]) | st.sampled_from(" \"'\\#=[]"), min_size=1, max_size=8)
 ELEMENT = st.one_of(
     st.builds(lambda ends, **fields: Wall(*ends, **fields), SEGMENT, **SURFACE),
     st.builds(Bumper, POINT, SIZE, **SURFACE),

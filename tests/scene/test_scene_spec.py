@@ -123,9 +123,7 @@ def test_a_range_ends_where_it_says(spec, field, low, high):
         assert refused == field
 
 
-@pytest.mark.parametrize(
-    "one", [1, 1.0, np.float64(1), np.float32(1), np.int64(1), np.uint8(1), Fraction(1)], ids=name
-)
+@pytest.mark.parametrize("one", [1, 1.0, np.float64(1), np.float32(1), np.int64(1), np.uint8(1), Fraction(1)], ids=name)
 def test_takes_any_real_number_and_keeps_a_float(one):
     wall = Wall((0, 0), (one, one), b=one)
     assert (type(wall.b), wall.b) == (float, 1.0)
@@ -233,17 +231,13 @@ def test_a_scene_takes_specs_only():
 
 
 def test_all_errors_are_reported_together():
-    fields = [
-        field for field, *_ in refusals(Paddle, (0, 0), half_width=-1, radius=True, b="1", colour="red")
-    ]
+    fields = [field for field, *_ in refusals(Paddle, (0, 0), half_width=-1, radius=True, b="1", colour="red")]
     assert sorted(fields) == ["b", "colour", "half_width", "max_speed", "radius", "rail_end"]
 
 
 def test_signatures_are_those_of_the_design():
     assert Ball(0.5, 2.0, 0.5) == Ball(radius=0.5, b=2.0, f=0.5)
-    assert Wall((0, 0), (1, 1)) == Wall(
-        start=(0, 0), end=(1, 1), b=1.0, f=1.0, kick=0.0, kick_threshold=0.0, name=""
-    )
+    assert Wall((0, 0), (1, 1)) == Wall(start=(0, 0), end=(1, 1), b=1.0, f=1.0, kick=0.0, kick_threshold=0.0, name="")
     assert Bumper((0, 0), 2) == Bumper(center=(0, 0), radius=2.0)
     assert Sensor((0, 0), (1, 1)) == Sensor(start=(0, 0), end=(1, 1), drain=False, name="")
     assert Scene() == Scene(gravity=(0.0, -9.81), ball=Ball(0.0), rest_speed=0.0, max_speed=None, elements=())

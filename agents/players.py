@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import torch
 from stable_baselines3 import PPO
 
 from agents.baselines import BASELINES, Player
@@ -15,7 +16,12 @@ DEFAULT_ENV_ID = "Bounce/Paddle-v0"
 
 
 def trained(model: PPO, *, sampled: bool = False) -> Player:
-    """A model that plays its best action (argmax), or samples one as it did in training."""
+    """A model that plays its best action (argmax), or samples one as it did in training.
+
+    What it samples is the same after each call of this function (which seeds PyTorch's one generator).
+    """
+    if sampled:
+        torch.manual_seed(0)
     return lambda observations: model.predict(observations, deterministic=not sampled)[0]
 
 

@@ -45,6 +45,7 @@ def write_mp4(path: Path, pictures: Iterable[Frame], fps: float) -> list[Image.I
         for k, picture in enumerate(pictures):
             if encoder is None:
                 height, width, _ = picture.shape
+                # Sizes that are odd are scaled to even ones, as H.264 needs them.
                 encoder = imageio_ffmpeg.write_frames(unfinished, (width, height), fps=fps, macro_block_size=2)
                 encoder.send(None)
             encoder.send(picture)

@@ -145,8 +145,8 @@ class PaddleEnv(BounceEnv):
 
     A field of 1.0 x 1.4 m under a gravity of 1.5 m/s^2: walls to the sides and above, a drain below, four bumpers that
     speed the ball up (b > 1, at most 3 m/s), and a paddle with round ends above the drain. The paddle's f < 1: its
-    motion drags the ball along, so that a player can aim. It kicks what comes faster than 0.05 m/s, so that no ball
-    dies on it. The physics has no time step: every bounce happens at its exact instant.
+    motion drags the ball along, so that a player can aim. It kicks whatever hits it, so that no ball dies on it. The
+    physics has no time step: every bounce happens at its exact instant.
 
     Actions, every `frame_skip` / 60 s:
 

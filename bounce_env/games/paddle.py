@@ -69,8 +69,8 @@ class PaddleOptions:
     scene: str | PathLike[str] | InstanceOf[Scene] = "paddle"
     action: Literal["continuous", "discrete"] = "continuous"
     frame_skip: Annotated[StrictInt, Field(ge=1, le=FPS)] = 2
-    repeat_action_probability: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
-    time_limit: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = 60.0
+    repeat_action_probability: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] = 0.0
+    time_limit: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)] | None = 60.0
 
 
 class Rules(NamedTuple):

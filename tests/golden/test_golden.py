@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-GOLDEN = "3d4918123811ca988270e479a3a3e0f56a8832d7a50465aac07b48a648216e2b"
+GOLDEN = "8262c51e9dfa2cae83b407469567efc32cef76a80a42e55682dc7957aaa47a1e"
 
 WORLDS, STEPS = 64, 600
 ROOT = Path(__file__).resolve().parents[2]

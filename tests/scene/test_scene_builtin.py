@@ -72,7 +72,7 @@ def test_the_paddle_can_crush_nothing():
     assert paddle.half_width + paddle.radius == pytest.approx(0.1)
     assert paddle.rail_start[1] == paddle.rail_end[1] == 0.08
     assert (paddle.name, paddle.max_speed, paddle.f, paddle.b) == ("paddle", 1.5, 0.5, 0.9)
-    assert (paddle.kick, paddle.kick_threshold) == (1.0, 0.05)
+    assert (paddle.kick, paddle.kick_threshold) == (1.0, 0.0)
 
 
 def test_nothing_passes_beside_the_drain():

@@ -10,11 +10,11 @@ train: $(VENV)/train
 	$(BIN)/python -m agents.train
 
 test: lint
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 # The same tests with full counts: hours, not minutes.
 soak: $(VENV)/dev
-	BOUNCE_SOAK=1 $(BIN)/python -m pytest -s
+	BOUNCE_SOAK=1 $(BIN)/python -m pytest -rP -n 2 --dist loadfile
 
 lint: $(VENV)/dev
 	$(BIN)/ruff check .

@@ -28,18 +28,22 @@ class Closed:
         return inside
 
     def starts(self, rng: np.random.Generator, count: int) -> tuple[Floats, Floats] | None:
-        """`count` places free of overlap and velocities of 0.1 to 10 m/s; None where there is hardly any room."""
+        """Places free of overlap (100 different ones at most) and `count` velocities of 0.1 to 10 m/s.
+
+        None where there is hardly any room.
+        """
+        different = min(count, 100)
         places: list[tuple[float, float]] = []
-        for _ in range(60 * count):
+        for _ in range(60 * different):
             x, y = rng.uniform(-1.6, 1.6, 2).tolist()
             if self.holds(x, y):
                 try:
                     places.append(cleared(self.scene, {}, x, y))
                 except ValueError:
                     continue
-            if len(places) == count:
+            if len(places) == different:
                 angle, speed = rng.uniform(0.0, 2.0 * np.pi, count), 10.0 ** rng.uniform(-1.0, 1.0, count)
-                return np.array(places), np.c_[speed * np.cos(angle), speed * np.sin(angle)]
+                return np.resize(places, (count, 2)), np.c_[speed * np.cos(angle), speed * np.sin(angle)]
         return None
 
 

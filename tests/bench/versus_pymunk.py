@@ -81,8 +81,23 @@ def measured(step: Callable[[np.ndarray], object], actions: np.ndarray, seconds:
     return measure
 
 
-def pymunk_steps(seconds: float) -> Callable[[], float]:
-    """A function that measures pymunk's steps per second once."""
+def bare_steps(seconds: float) -> Callable[[], float]:
+    """A function that measures pymunk's steps per second once, with a paddle that stands: no Python between steps."""
+    space, _ = pymunk_space()
+
+    def measure() -> float:
+        steps, begin = 0, time.perf_counter()
+        while time.perf_counter() - begin < seconds:
+            for _ in range(256):
+                space.step(STEP)
+            steps += 256
+        return steps / (time.perf_counter() - begin)
+
+    return measure
+
+
+def steered_steps(seconds: float) -> Callable[[], float]:
+    """A function that measures pymunk's steps per second once, with the paddle steered and held at its stops."""
     space, paddle = pymunk_space()
     speeds = np.random.default_rng(0).uniform(-1.5, 1.5, 256).tolist()
 
@@ -99,17 +114,17 @@ def pymunk_steps(seconds: float) -> Callable[[], float]:
     return measure
 
 
-def compare(seconds: float = 0.3, rounds: int = 7) -> tuple[float, float, float]:
-    """Median steps per second of the batch, the vector env and pymunk, over rounds in which they take turns."""
-    measures = (batch_steps(seconds), vector_steps(seconds), pymunk_steps(seconds))
+def compare(seconds: float, rounds: int = 7) -> list[float]:
+    """Median steps per second of batch, vector env, pymunk steered and bare, over rounds in which they take turns."""
+    measures = [make(seconds) for make in (batch_steps, vector_steps, steered_steps, bare_steps)]
     table = [[measure() for measure in measures] for _ in range(rounds)]
-    batch, vector, other = (statistics.median(column) for column in zip(*table, strict=True))
-    return batch, vector, other
+    return [statistics.median(column) for column in zip(*table, strict=True)]
 
 
 if __name__ == "__main__":
-    batch, vector, other = compare(seconds=1.0)
-    print(f"{WORLDS} worlds of Bounce/Paddle-v0 on one thread, medians of one run:")  # noqa: T201
-    print(f"native batch            {batch / 1e6:6.2f} M steps/s  {batch / other:5.0f} x pymunk")  # noqa: T201
-    print(f"Gymnasium vector env    {vector / 1e6:6.2f} M steps/s  {vector / other:5.0f} x pymunk")  # noqa: T201
-    print(f"pymunk {pymunk.version}, one step  {other / 1e3:6.0f} k steps/s")  # noqa: T201
+    batch, vector, steered, bare = compare(seconds=0.5)
+    print(f"{WORLDS} worlds of Bounce/Paddle-v0 on one thread against pymunk {pymunk.version}, medians of one run:")  # noqa: T201
+    print(f"pymunk, paddle steered  {steered / 1e6:6.3f} M steps/s")  # noqa: T201
+    print(f"pymunk, bare step       {bare / 1e6:6.3f} M steps/s")  # noqa: T201
+    for name, ours in (("native batch", batch), ("Gymnasium vector env", vector)):
+        print(f"{name:22}  {ours / 1e6:6.3f} M steps/s, {ours / steered:.0f} and {ours / bare:.0f} times")  # noqa: T201

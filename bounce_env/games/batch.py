@@ -105,7 +105,7 @@ class Batch:
         return sum(self._threads.map(step, self._borders[:-1], self._borders[1:]))
 
     def _checked(self, actions: Array) -> Array:
-        """The actions as (worlds,) numbers for the kernel, which refuses those that are not finite itself."""
+        """The actions as (worlds,) numbers for the kernel; whether they are finite is asked after this."""
         discrete = self.game.discrete_actions
         kinds, what = ("fiu", "numbers") if discrete is None else ("iu", f"whole numbers from 0 to {discrete - 1}")
         column = discrete is None and actions.shape == (self.worlds, 1)

@@ -44,7 +44,7 @@ from bounce_env.games.episode import (
 from bounce_env.games.streams import LAUNCHES, STICKY_ACTIONS, uniform
 from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall, load_scene
 
-# The launch, as shares of the field (games.md: x in (.2, .8), y .55 of 1.4 m, 1.5 m/s at 30 to 150 degrees).
+# The launch: place as shares of the field, so that it fits the scenes of users, too.
 LAUNCH_X = (0.2, 0.8)
 LAUNCH_Y = 0.4
 LAUNCH_SPEED = 1.5  # m/s

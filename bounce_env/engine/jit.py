@@ -8,8 +8,8 @@
 * `nogil`, and never `parallel=True`: threads run kernels over slices of a batch (a forked child survives that).
 
 Only entry points are cached on disk; what they call is compiled into them. Numba checks a cached binary against the
-one file that defines the entry point, so a change in a helper would leave it stale. Here the check is a hash over all
-sources that can be compiled into a kernel.
+one file that defines the entry point, so a change in a helper would leave it stale. Here a hash over all sources that
+can be compiled into a kernel is checked, too.
 """
 
 import functools
@@ -46,16 +46,15 @@ def sources_hash() -> str:
     return digest.hexdigest()
 
 
-def _stamped(locator: type) -> type:
-    return type(locator.__name__, (locator,), {"get_source_stamp": lambda self: sources_hash()})
-
-
-class _CacheImpl(caching.CompileResultCacheImpl):  # type: ignore[misc]
-    _locator_classes = tuple(_stamped(locator) for locator in caching.CacheImpl._locator_classes)
-
-
 class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
-    _impl_class = _CacheImpl
+    """Numba's cache, in which another state of the sources counts as another version of Numba.
+
+    An index of another version is put aside unread: reading it could fail on a class that is no longer there.
+    """
+
+    def __init__(self, python_function: Callable[..., Any]) -> None:
+        super().__init__(python_function)
+        self._cache_file._version = f"{numba.__version__} {sources_hash()}"
 
 
 def function(python_function: F) -> F:

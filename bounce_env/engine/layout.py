@@ -61,7 +61,6 @@ ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can r
 PADDLE = record(
     offset="f8", velocity="f8", hi="f8", lo="f8",  # along the rail, at the instant of the last command or stop
     command="f8",  # [m/s] as asked for; `velocity` is 0 where a stop holds the paddle against it
-    stop_hi="f8", stop_lo="f8",
 )  # fmt: skip
 LEDGER = record(
     time="f8", ball="i8", element="i8", kind="i8", x="f8", y="f8", nx="f8", ny="f8",

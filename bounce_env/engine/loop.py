@@ -7,7 +7,7 @@ in its order.
 import math
 
 from bounce_env.engine.flight import moved, pull, sped, touch_tolerance
-from bounce_env.engine.instant import before, later, since
+from bounce_env.engine.instant import before, since
 from bounce_env.engine.jit import Feature, Record, Table, function
 from bounce_env.engine.layout import (
     BUDGET,
@@ -22,8 +22,15 @@ from bounce_env.engine.layout import (
     Tables,
 )
 from bounce_env.engine.resolve import arrive, bounce_from_all, count_hit, face_sensors, snap
-from bounce_env.engine.search import plan_flight, plan_parts, plan_sensor, plan_zones, rail_offset
-from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT
+from bounce_env.engine.search import (
+    plan_flight,
+    plan_parts,
+    plan_sensor,
+    plan_zones,
+    rail_offset,
+    stop_instant,
+)
+from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, UNSURE
 
 # How a run of the loop ends.
 DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
@@ -38,7 +45,7 @@ def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, 
     world = state.worlds[w]
     events = 0
     while True:
-        hi, lo, ball, paddle = _next(state, w, until_hi, until_lo)
+        hi, lo, ball, paddle = _next(state, tables, w, until_hi, until_lo)
         if ball < 0 and paddle < 0:
             world.time_hi, world.time_lo = until_hi, until_lo
             return DONE
@@ -56,27 +63,45 @@ def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, 
 
 
 @function
-def _next(state: State, w: int, until_hi: float, until_lo: float) -> tuple[float, float, int, int]:
+def _next(state: State, tables: Tables, w: int, until_hi: float, until_lo: float) -> tuple[float, float, int, int]:
     hi, lo, ball, paddle = math.inf, 0.0, -1, -1
     for k in range(state.balls.shape[1]):
         b = state.balls[w, k]
         if not before(until_hi, until_lo, b.next_hi, b.next_lo) and before(b.next_hi, b.next_lo, hi, lo):
             hi, lo, ball = b.next_hi, b.next_lo, k
-    m, stop_hi, stop_lo = _first_stop(state.paddles, w)
-    if m >= 0 and not before(until_hi, until_lo, stop_hi, stop_lo) and before(stop_hi, stop_lo, hi, lo):
+    scene = state.worlds[w].scene
+    m, stop_hi, stop_lo = _first_stop(state.paddles, tables.rails, w, scene, until_hi, until_lo)
+    if before(stop_hi, stop_lo, hi, lo):
         return stop_hi, stop_lo, -1, m
     return hi, lo, ball, paddle
 
 
 @function
-def _first_stop(paddles: Table, w: int) -> tuple[int, float, float]:
+def _first_stop(
+    paddles: Table, rails: Table, w: int, scene: int, until_hi: float, until_lo: float
+) -> tuple[int, float, float]:
     hi, lo, first = math.inf, 0.0, -1
-    if paddles is None:
+    if paddles is None or rails is None:
         return first, hi, lo
     for m in range(paddles.shape[1]):
-        if before(paddles[w, m].stop_hi, paddles[w, m].stop_lo, hi, lo):
-            hi, lo, first = paddles[w, m].stop_hi, paddles[w, m].stop_lo, m
+        paddle, rail = paddles[w, m], rails[scene, m]
+        if _moves_until(paddle, rail, until_hi, until_lo):
+            continue
+        stop_hi, stop_lo = stop_instant(paddle, rail)
+        if not before(until_hi, until_lo, stop_hi, stop_lo) and before(stop_hi, stop_lo, hi, lo):
+            hi, lo, first = stop_hi, stop_lo, m
     return first, hi, lo
+
+
+@function
+def _moves_until(paddle: Record, rail: Record, hi: float, lo: float) -> bool:
+    """Whether the paddle surely comes to no stop up to an instant: most are told so without a division.
+
+    The margin covers the rounding of the two ways; within it the stop's instant decides. Asked of both stops alike,
+    since which one lies ahead is a coin's toss to the processor.
+    """
+    margin = UNSURE * rail.span
+    return paddle.velocity == 0.0 or margin < rail_offset(paddle, hi, lo) < rail.span - margin
 
 
 @function
@@ -178,10 +203,9 @@ def _paddle_stops(paddles: Table, rails: Table, world: Record, w: int, m: int, l
         return
     paddle, rail = paddles[w, m], rails[world.scene, m]
     velocity = paddle.velocity
+    paddle.hi, paddle.lo = stop_instant(paddle, rail)
     paddle.offset = rail.span if velocity > 0.0 else 0.0
-    paddle.hi, paddle.lo = paddle.stop_hi, paddle.stop_lo
     paddle.velocity = 0.0
-    paddle.stop_hi, paddle.stop_lo = math.inf, 0.0
     if ledger is not None:
         row = ledger[world.rows]
         row.time, row.ball, row.element, row.kind = paddle.hi, -1, rail.element, PART_STOPS
@@ -232,29 +256,30 @@ def command_unwatched(
 
 
 @function
-def is_calm(balls: Table, paddles: Table, w: int, until_hi: float, until_lo: float) -> bool:
-    """Whether nothing happens in world `w` up to and including an instant."""
+def is_calm(balls: Table, paddles: Table, rails: Table, w: int, scene: int, until_hi: float, until_lo: float) -> bool:
+    """Whether surely nothing happens in world `w` up to and including an instant."""
     for k in range(balls.shape[1]):
         if not before(until_hi, until_lo, balls[w, k].next_hi, balls[w, k].next_lo):
             return False
-    if paddles is not None:
+    if paddles is not None and rails is not None:
         for m in range(paddles.shape[1]):
-            if not before(until_hi, until_lo, paddles[w, m].stop_hi, paddles[w, m].stop_lo):
+            if not _moves_until(paddles[w, m], rails[scene, m], until_hi, until_lo):
                 return False
     return True
 
 
 @function
 def set_off(paddle: Record, rail: Record, world: Record, velocity: float) -> None:
-    """Start a commanded motion from the paddle's place: against a stop it stands, else the stop ahead is an event."""
+    """Start a commanded motion from the paddle's place: against a stop it stands."""
     paddle.offset = min(max(rail_offset(paddle, world.time_hi, world.time_lo), 0.0), rail.span)
     paddle.hi, paddle.lo = world.time_hi, world.time_lo
     paddle.command = velocity
-    room = rail.span - paddle.offset if paddle.command > 0.0 else paddle.offset
-    paddle.velocity = paddle.command if room > 0.0 else 0.0
-    paddle.stop_hi, paddle.stop_lo = math.inf, 0.0
-    if paddle.velocity != 0.0:
-        paddle.stop_hi, paddle.stop_lo = later(paddle.hi, paddle.lo, room / abs(paddle.velocity))
+    # Written without asking for the sign of the velocity, which the processor could only guess.
+    if paddle.offset == 0.0:
+        velocity = max(velocity, 0.0)
+    if paddle.offset == rail.span:
+        velocity = min(velocity, 0.0)
+    paddle.velocity = velocity
 
 
 @function
@@ -308,7 +333,6 @@ def _rest_paddles(paddles: Table, rails: Table, w: int, scene: int, count: int) 
         paddle = paddles[w, m]
         paddle.offset = 0.5 * rails[scene, m].span if m < count else 0.0
         paddle.velocity, paddle.command, paddle.hi, paddle.lo = 0.0, 0.0, 0.0, 0.0
-        paddle.stop_hi, paddle.stop_lo = math.inf, 0.0
 
 
 @function

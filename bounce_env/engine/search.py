@@ -178,6 +178,15 @@ def rail_offset(paddle: Record, hi: float, lo: float) -> float:
 
 
 @function
+def stop_instant(paddle: Record, rail: Record) -> tuple[float, float]:
+    """Instant at which the paddle's present motion ends at a stop: (hi, lo), inf if it stands."""
+    if paddle.velocity == 0.0:
+        return math.inf, 0.0
+    room = rail.span - paddle.offset if paddle.velocity > 0.0 else paddle.offset
+    return later(paddle.hi, paddle.lo, room / abs(paddle.velocity))
+
+
+@function
 def meet_paddle(
     ball: Record, paddle: Record, rail: Record, extent: float, gx: Feature, gy: Feature
 ) -> tuple[float, float]:
@@ -190,7 +199,8 @@ def meet_paddle(
     else:
         hi, lo = ball.hi, ball.lo
     t = since(hi, lo, ball.hi, ball.lo)
-    horizon = min(ball.end_after - t, since(paddle.stop_hi, paddle.stop_lo, hi, lo))
+    stop_hi, stop_lo = stop_instant(paddle, rail)
+    horizon = min(ball.end_after - t, since(stop_hi, stop_lo, hi, lo))
     offset = rail_offset(paddle, hi, lo)
     after = capsule_time(
         moved(ball.x, ball.vx, gx, t) - (rail.x + offset * rail.ux),

@@ -18,3 +18,6 @@ SEARCH_STEPS = 500
 
 # Bounces resolved at one instant before the ball is left to the next event (and so to the event budget).
 BOUNCES_AT_ONE_INSTANT = 32
+
+# Nearer than this share of its way to a stop, a part may or may not have reached it: the stop's instant decides.
+UNSURE = 2.0**-40

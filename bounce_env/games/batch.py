@@ -1,6 +1,5 @@
 """A batch of worlds that play one game: the one thing that the single env, the vector env and SB3's share."""
 
-import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -9,7 +8,6 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.jit import kernel
 from bounce_env.engine.layout import Array, State, Tables, new_state
 from bounce_env.engine.view import view
 from bounce_env.games.episode import END_REASONS, EPISODE, Results, bind, new_results
@@ -20,20 +18,11 @@ Mask = npt.NDArray[np.bool_]
 _END_REASONS = np.array(END_REASONS, dtype=object)
 
 
-@kernel
-def all_finite(numbers: Array) -> bool:
-    """Whether there is neither NaN nor infinity in (n,) floats."""
-    for number in numbers:  # noqa: SIM110 (a loop is what compiles to one)
-        if not math.isfinite(number):
-            return False
-    return True
-
-
 class Game(Protocol):
     """What a batch needs of a game."""
 
     reset_worlds: ClassVar[Callable[..., None]]
-    step_worlds: ClassVar[Callable[..., int]]
+    step_worlds: ClassVar[Callable[..., int]]  # negative where an action was not finite, and nothing was done
 
     scenes: tuple[Scene, ...]
     tables: Tables
@@ -95,14 +84,16 @@ class Batch:
         another shape or type, NaN, infinity, or no such action.
         """
         speeds = self._checked(np.asarray(actions))
-        if not all_finite(speeds):
-            self._refuse(speeds)
-        step = partial(self.game.step_worlds, self._bound(), speeds, self.autoreset)
         if len(self._borders) == 2:
-            return step(0, self.worlds)
-        if self._threads is None:
-            self._threads = ThreadPoolExecutor(len(self._borders) - 1)
-        return sum(self._threads.map(step, self._borders[:-1], self._borders[1:]))
+            ended = self.game.step_worlds(self._bound(), speeds, self.autoreset, 0, self.worlds)
+        else:
+            if self._threads is None:
+                self._threads = ThreadPoolExecutor(len(self._borders) - 1)
+            step = partial(self.game.step_worlds, self._bound(), speeds, self.autoreset)
+            ended = sum(self._threads.map(step, self._borders[:-1], self._borders[1:]))
+        if ended < 0:
+            self._refuse(speeds)
+        return ended
 
     def _checked(self, actions: Array) -> Array:
         """The actions as (worlds,) numbers for the kernel; whether they are finite is asked after this."""
@@ -114,7 +105,7 @@ class Batch:
         if actions.dtype.kind not in kinds:
             raise ValueError(f"actions = {actions!r}: must be {what}")
         if discrete is None:
-            return actions.reshape(self.worlds).astype(np.float64)
+            return actions.reshape(self.worlds).astype(np.float64, copy=False)
         if (actions < 0).any() or (actions >= discrete).any():
             raise ValueError(f"actions = {actions!r}: each must be a whole number from 0 to {discrete - 1}")
         return self.game.speeds(actions.reshape(self.worlds))

@@ -1,5 +1,6 @@
 """What every game keeps for each world beside the engine's state, and what it says of an episode."""
 
+import math
 from typing import Any, NamedTuple
 
 import numba
@@ -113,6 +114,15 @@ def borrow_results(results: Results) -> Results:
         borrow(results.ended),
         borrow(results.busy),
     )
+
+
+@function
+def all_finite(numbers: Array) -> bool:
+    """Whether there is neither NaN nor infinity in (n,) floats."""
+    finite = True
+    for number in numbers:
+        finite &= abs(number) < math.inf
+    return finite
 
 
 @function

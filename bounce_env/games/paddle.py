@@ -36,6 +36,7 @@ from bounce_env.games.episode import (
     SAME_STEP,
     TIME_LIMIT,
     Results,
+    all_finite,
     begin_episode,
     borrow_results,
     close_books,
@@ -231,6 +232,8 @@ def play(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, ac
 def glide(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, action: float, results: Results) -> bool:
     """The step of a world in which nothing happens; False, and nothing done that `play` would not do, where it may.
 
+    The rewards and ends of `results` are expected to say already that nothing happened.
+
     Most steps are such. What it does is what `play` does, without the code for what does not happen: a small loop over
     these and another one over the rest run several times faster than one loop over both.
     """
@@ -241,16 +244,14 @@ def glide(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, a
     until = frames / rules.fps
     if rules.repeat > 0.0 or not steer(state, tables, tables.rails, w, action):
         return False
-    if not is_calm(state.balls, state.paddles, w, until, 0.0):
+    if not is_calm(state.balls, state.paddles, tables.rails, w, world.scene, until, 0.0):
         return False
     clear_hits(state, w)
-    if results.ended[w].end != RUNNING:
+    # An episode that ended in the last step has been followed by a new one, of which this is the first step.
+    if episode.frames == 0:
         open_books(results, w)
     episode.last_action, episode.frames = action, frames
     world.time_hi, world.time_lo = until, 0.0
-    results.rewards[w] = 0.0
-    results.terminated[w] = False
-    results.truncated[w] = False
     observe(state, tables, rules, episodes, w, results.observations)
     return True
 
@@ -304,11 +305,17 @@ def reset_worlds(handle: Any, mask: Array) -> None:
 def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: int) -> int:
     """One step of worlds `first` to `last` - 1, with the autoreset mode's resets; returns how many episodes ended.
 
-    actions: (worlds,) float64, clipped to [-1, 1]. A world whose episode has ended is reset in place of a step
+    actions: (worlds,) float64, clipped to [-1, 1]; where any of them is NaN or infinite nothing is done and -1
+    returned. A world whose episode has ended is reset in place of a step
     (NEXT_STEP), was reset at its end (SAME_STEP), or must have been reset by the caller (DISABLED).
     """
     state, tables, episodes = borrow_state(handle.state), borrow_tables(handle.tables), borrow(handle.episodes)
     rules, results, start = borrow_rules(handle.rules), borrow_results(handle.results), borrow(handle.start)
+    if not all_finite(actions):
+        return -1
+    results.rewards[first:last] = 0.0
+    results.terminated[first:last] = False
+    results.truncated[first:last] = False
     busy = first
     for w in range(first, last):
         if not glide(state, tables, rules, episodes, w, min(max(actions[w], -1.0), 1.0), results):
@@ -320,9 +327,6 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
         if autoreset == NEXT_STEP and episodes[w].end != RUNNING:
             begin(state, tables, rules, episodes, w, start)
             observe(state, tables, rules, episodes, w, results.observations)
-            results.rewards[w] = 0.0
-            results.terminated[w] = False
-            results.truncated[w] = False
             open_books(results, w)
             continue
         results.rewards[w] = play(state, tables, rules, episodes, w, min(max(actions[w], -1.0), 1.0))

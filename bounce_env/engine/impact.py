@@ -9,7 +9,7 @@ import math
 
 from bounce_env.engine.flight import dot, moved, sped, swept
 from bounce_env.engine.jit import Feature, function
-from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED
 
 
 @function
@@ -118,7 +118,7 @@ def straight_circle_time(x: float, y: float, vx: float, vy: float, reach: float,
 @function
 def passing(x: float, v: float, reach: float) -> tuple[float, float]:
     """The durations between which |x + v t| <= reach, as (from, to) with from >= 0; from > to if never."""
-    if v == 0.0:
+    if abs(v) < STANDING:
         return 0.0, math.inf if abs(x) <= reach else -1.0
     inverse = 1.0 / v
     middle, half = -x * inverse, reach * abs(inverse)

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import soak_count
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bounce_env.engine.impact import (
@@ -106,6 +106,9 @@ def test_straight_circle_time_in_closed_form(x: float, y: float, vx: float, vy: 
     x=coordinate, y=coordinate, vx=coordinate, vy=coordinate, gy=st.floats(-5.0, 0.0),
     half=st.floats(0.01, 2.0), reach=st.floats(0.01, 1.0), angle=st.floats(0.0, 6.3),
 )  # fmt: skip
+@example(
+    x=0.0, y=2.0, vx=2.2e-309, vy=0.0, gy=-1.0, half=1.0, reach=1.0, angle=1.0
+)  # a denormal speed: its inverse is inf
 def test_no_capsule_is_stepped_over(
     x: float, y: float, vx: float, vy: float, gy: float, half: float, reach: float, angle: float
 ) -> None:

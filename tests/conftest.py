@@ -2,7 +2,16 @@
 
 import os
 
+from hypothesis import settings
+
+SOAK = os.environ.get("BOUNCE_SOAK") == "1"
+
+# The sample is the same on every machine and day; a soak looks for examples that nobody has seen yet.
+settings.register_profile("sample", derandomize=True)
+settings.register_profile("soak", print_blob=True)
+settings.load_profile("soak" if SOAK else "sample")
+
 
 def soak_count(sample: int, full: int) -> int:
     """`sample` under `make test`, `full` under `make soak` (BOUNCE_SOAK=1)."""
-    return full if os.environ.get("BOUNCE_SOAK") == "1" else sample
+    return full if SOAK else sample

@@ -9,7 +9,7 @@ import math
 
 from bounce_env.engine.flight import dot, moved, sped, swept
 from bounce_env.engine.jit import Feature, function
-from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED, WEIGHTLESS
 
 
 @function
@@ -183,7 +183,7 @@ def circle_time(
     """Hit of a circle about the origin, from outside."""
     if gx is None:
         return straight_circle_time(x, y, vx, vy, reach, slack)
-    if gx == 0.0 and gy == 0.0:
+    if abs(gx) + abs(gy) < WEIGHTLESS:
         return straight_circle_time(x, y, vx, vy, reach, slack)
     return curved_circle_time(x, y, vx, vy, gx, gy, reach, slack, horizon)
 

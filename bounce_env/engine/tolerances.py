@@ -11,6 +11,9 @@ ULPS_OF_SPEED = 4.0 * 2.0**-52  # (dimensionless, times m/s)
 # A speed [m/s] below which nothing moves in any time that a run can last; its inverse would overflow.
 STANDING = 1e-290
 
+# An acceleration [m/s^2] below which a flight is straight; its square would underflow.
+WEIGHTLESS = 1e-150
+
 # How far into an obstacle a ball may be placed by `reset`, as a share of the scene's extent, before it is an error.
 # Within it the ball is moved to the surface: it is what is lost by writing a position down.
 START_OVERLAP = 1e-12  # (dimensionless, times metres)

@@ -11,14 +11,40 @@ from bounce_env.registration import register_all
 
 if TYPE_CHECKING:
     from bounce_env.engine.world import World
-    from bounce_env.scene import Ball, Bumper, Paddle, Scene, SceneError, Sensor, Wall, builtin_scenes, load_scene
+    from bounce_env.scene import (
+        Arc,
+        Ball,
+        Bumper,
+        Field,
+        Paddle,
+        Scene,
+        SceneError,
+        Sensor,
+        Wall,
+        builtin_scenes,
+        load_scene,
+    )
 
-_SCENE = ("Ball", "Bumper", "Paddle", "Scene", "SceneError", "Sensor", "Wall", "builtin_scenes", "load_scene")
+_SCENE = (
+    "Arc",
+    "Ball",
+    "Bumper",
+    "Field",
+    "Paddle",
+    "Scene",
+    "SceneError",
+    "Sensor",
+    "Wall",
+    "builtin_scenes",
+    "load_scene",
+)
 _HOME = {"World": "bounce_env.engine.world", **dict.fromkeys(_SCENE, "bounce_env.scene")}
 
 __all__ = [
+    "Arc",
     "Ball",
     "Bumper",
+    "Field",
     "Paddle",
     "Scene",
     "SceneError",

@@ -6,8 +6,8 @@ the same formula as one that is not there, so that the general kernel gives the 
 
 import math
 
-from bounce_env.engine.jit import Feature, Table, function, function_of_feature
-from bounce_env.engine.tolerances import ULPS_OF_LENGTH
+from bounce_env.engine.jit import Feature, Record, function, function_of_feature
+from bounce_env.engine.tolerances import ULPS_OF_LENGTH, ULPS_OF_SPEED
 
 
 @function
@@ -28,16 +28,6 @@ def sped(v: float, g: Feature, t: float) -> float:
     if g == 0.0:
         return v
     return v + g * t
-
-
-def _no_pull(gravity: Table, scene: int) -> tuple[None, None]:
-    return None, None
-
-
-@function_of_feature(absent=_no_pull)
-def pull(gravity: Table, scene: int) -> tuple[Feature, Feature]:
-    """Gravity of a scene [m/s^2] as (gx, gy); (None, None) where no scene of the batch has any."""
-    return gravity[scene, 0], gravity[scene, 1]
 
 
 def _no_dot(ax: Feature, ay: Feature, nx: float, ny: float) -> None:
@@ -84,10 +74,26 @@ def time_in_scene(extent: float, x: float, y: float, vx: float, vy: float, gx: F
     # Nothing of the scene is further than 2 extent along any direction.
     room = max(2.0 * extent - (x * nx + y * ny), 0.0)
     speed = vx * nx + vy * ny
-    return (math.sqrt(speed * speed + 2.0 * g * room) - speed) / g
+    root = math.sqrt(speed * speed + 2.0 * g * room)
+    # The form that adds two terms of one sign: along a wall next to nothing of gravity may be left.
+    return 2.0 * room / (root + speed) if speed > 0.0 else (root - speed) / g
 
 
 @function
 def touch_tolerance(extent: float, vx: float, vy: float, gx: Feature, gy: Feature, t: float) -> float:
     """What counts as touching [m] after a flight of `t` seconds: rounding of the lengths that entered its end."""
     return ULPS_OF_LENGTH * (extent + (abs(vx) + abs(vy) + magnitude(gx, gy) * t) * t)
+
+
+@function
+def fly(ball: Record, gx: Feature, gy: Feature, t: float, hi: float, lo: float) -> None:
+    """Move the ball along its flight by `t` seconds and let that be where, at (hi, lo), a new one starts."""
+    ball.x, ball.y = moved(ball.x, ball.vx, gx, t), moved(ball.y, ball.vy, gy, t)
+    ball.vx, ball.vy = sped(ball.vx, gx, t), sped(ball.vy, gy, t)
+    ball.hi, ball.lo = hi, lo
+
+
+@function
+def slow_on_circle(vx: float, vy: float, reach: float, slack: float) -> float:
+    """Closing slower than this [m/s] is no hit of a circle: the rounding of the velocity and of the normal."""
+    return (ULPS_OF_SPEED + slack / reach) * (abs(vx) + abs(vy))

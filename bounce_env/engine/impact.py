@@ -7,7 +7,8 @@ part's position and velocity, and the same functions serve. `reach` is the obsta
 
 import math
 
-from bounce_env.engine.flight import dot, moved, sped, swept
+from bounce_env.engine.arc import crossing_time
+from bounce_env.engine.flight import dot, moved, slow_on_circle, sped, swept
 from bounce_env.engine.jit import Feature, function
 from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED, WEIGHTLESS
 
@@ -42,6 +43,60 @@ def falling_time(gap: float, behind: bool, rate: float, pull: Feature) -> float:
 
 
 @function
+def line_time(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    gx: Feature,
+    gy: Feature,
+    ux: float,
+    uy: float,
+    reach: float,
+    facing: float,
+    side: float,
+    slack: float,
+) -> float:
+    """As `facing_time`, for a line that has no ends."""
+    nx, ny = -facing * uy, facing * ux
+    gap = x * nx + y * ny - reach
+    rate = vx * nx + vy * ny
+    behind = gap < -slack or (gap <= slack and side == -facing)
+    if not behind and gap <= slack:
+        if abs(rate) <= ULPS_OF_SPEED * (abs(vx) + abs(vy)):
+            rate = 0.0
+        if rate > 0.0:
+            # It has just bounced there: what is left of a gap is rounding, and would count for much in the last hops.
+            gap = 0.0
+    return falling_time(gap, behind, rate, dot(gx, gy, nx, ny))
+
+
+@function
+def leaves_end(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    gx: Feature,
+    gy: Feature,
+    ux: float,
+    uy: float,
+    length: float,
+    reach: float,
+    slack: float,
+) -> bool:
+    """Whether a ball slides off the end of a wall just now: it touches still, but will be beside it when it falls."""
+    slow = ULPS_OF_SPEED * (abs(vx) + abs(vy))
+    if abs(abs(y * ux - x * uy) - reach) > slack or abs(vy * ux - vx * uy) > slow:
+        return False
+    along = x * ux + y * uy
+    lean = vx * ux + vy * uy
+    if abs(lean) <= slow and gx is not None:
+        lean = gx * ux + gy * uy
+    return (along >= length - slack and lean > 0.0) or (along <= slack and lean < 0.0)
+
+
+@function
 def facing_time(
     x: float,
     y: float,
@@ -63,14 +118,8 @@ def facing_time(
     `facing` 1.0 is the face on the left of that direction, -1.0 the one on the right. `side` is the side, 1 or -1, on
     which a ball of no radius is while it touches the wall; 0 for a disc, whose centre keeps its distance.
     """
-    nx, ny = -facing * uy, facing * ux
-    gap = x * nx + y * ny - reach
-    rate = vx * nx + vy * ny
-    behind = gap < -slack or (gap <= slack and side == -facing)
-    if not behind and gap <= slack and abs(rate) <= ULPS_OF_SPEED * (abs(vx) + abs(vy)):
-        rate = 0.0
-    t = falling_time(gap, behind, rate, dot(gx, gy, nx, ny))
-    if t == math.inf or t > horizon:
+    t = line_time(x, y, vx, vy, gx, gy, ux, uy, reach, facing, side, slack)
+    if t > horizon or t == math.inf or leaves_end(x, y, vx, vy, gx, gy, ux, uy, length, reach, slack):
         return math.inf
     along = moved(x, vx, gx, t) * ux + moved(y, vy, gy, t) * uy
     # The slack closes the joint between two walls for a ball of no radius; for a disc the end's circle takes over.
@@ -106,7 +155,7 @@ def straight_circle_time(x: float, y: float, vx: float, vy: float, reach: float,
     """Hit of a circle about the origin on a straight flight: the smaller root in closed form, nothing cancels."""
     distance = math.sqrt(x * x + y * y)
     approach = -(x * vx + y * vy)
-    if approach <= ULPS_OF_SPEED * (abs(vx) + abs(vy)) * distance:
+    if approach <= slow_on_circle(vx, vy, reach, slack) * distance:
         return math.inf
     cross = x * vy - y * vx
     square = (vx * vx + vy * vy) * reach * reach - cross * cross
@@ -148,23 +197,29 @@ def curved_circle_time(
         if not near(moved(x, vx, gx, t), sped(vx, gx, t), gx, horizon - t, reach + slack):
             return math.inf
     bound = math.sqrt(gx * gx + gy * gy)
+    away = 0.0
+    if x * x + y * y <= (reach + slack) * (reach + slack) and x * vx + y * vy > 0.0:
+        # It has just bounced there: what is left of a gap is rounding, and would count for much in the last hops.
+        away = math.sqrt(x * x + y * y) - reach
     for _ in range(SEARCH_STEPS):
         px, py = moved(x, vx, gx, t), moved(y, vy, gy, t)
         qx, qy = sped(vx, gx, t), sped(vy, gy, t)
         distance = math.sqrt(px * px + py * py)
-        gap = distance - reach
+        gap = distance - reach - away
         rate = (px * qx + py * qy) / distance
         if gap <= slack:
-            slow = ULPS_OF_SPEED * (abs(qx) + abs(qy))
-            if rate < -slow:
-                return max(t - gap / rate, 0.0)
+            if rate < -slow_on_circle(qx, qy, reach, slack):
+                # In a hop that hardly rises above the slack the speed still changes on the last bit of the way.
+                root = math.sqrt(max(rate * rate + 2.0 * bound * gap, 0.0))
+                return max(t + 2.0 * gap / (root - rate), 0.0)
             rate = max(rate, 0.0)
             gap = max(gap, 0.0)
         root = math.sqrt(rate * rate + 2.0 * bound * gap)
         t += 2.0 * gap / (root - rate) if rate < 0.0 else (rate + root) / bound
         if t > horizon:
             return math.inf
-    return t
+    # Along the circle's tangent from a touch the gap hardly opens, and each step is but a small one.
+    return crossing_time(None, reach, -1.0, x, y, vx, vy, gx, gy, True, slack, -1.0, horizon)
 
 
 @function

@@ -1,4 +1,4 @@
-"""The bounce law: the tutorial's reflection in the frame of the surface, then the kick, then the cap."""
+"""The bounce law: the tutorial's reflection in the frame of the surface, and the cap."""
 
 import math
 
@@ -7,33 +7,18 @@ from bounce_env.engine.jit import function
 
 @function
 def bounce(
-    vx: float,
-    vy: float,
-    nx: float,
-    ny: float,
-    ux: float,
-    uy: float,
-    b: float,
-    f: float,
-    kick: float,
-    kick_threshold: float,
+    vx: float, vy: float, nx: float, ny: float, ux: float, uy: float, rebound: float, f: float
 ) -> tuple[float, float]:
-    """Velocity [m/s] after a hit, v' = u + f w_t - b w_n (+ kick n), with w = v - u.
+    """Velocity [m/s] after a hit, v' = u + f w_t + rebound n, with w = v - u; by the law `rebound` is b times -w.n.
 
     Tutorial, "Real bounce and friction": project on the wall and on its normal, scale by friction and bounciness,
     reverse, add. Unit vectors throughout: the tutorial's printed projections divide by the wall's length once where
     they must divide twice. `n` points from the element to the ball, `u` is the surface's velocity at the contact
-    point; b and f are the products of ball's and element's. The kick acts when the approach is faster than its
-    threshold.
+    point; b and f are the products of ball's and element's.
     """
     wx, wy = vx - ux, vy - uy
-    normal = wx * nx + wy * ny
-    along = wy * nx - wx * ny
-    away = -b * normal
-    if kick > 0.0 and -normal > kick_threshold:
-        away += kick
-    along *= f
-    return ux + (away * nx - along * ny), uy + (away * ny + along * nx)
+    along = f * (wy * nx - wx * ny)
+    return ux + (rebound * nx - along * ny), uy + (rebound * ny + along * nx)
 
 
 @function

@@ -22,17 +22,27 @@ def record(**fields: str) -> np.dtype[Any]:
 
 
 SCENE = record(
-    faces="i8", circles="i8", sensors="i8", paddles="i8",  # how many rows of each table this scene uses
+    # How many rows of each table this scene uses.
+    faces="i8", circles="i8", arcs="i8", sensors="i8", rings="i8", fields="i8", paddles="i8",
     extent="f8",  # [m] the largest coordinate of the scene plus the ball's radius: the scale of round-off
     max_speed="f8",  # [m/s] inf where the scene has no cap
+    rest_speed="f8",  # [m/s]
 )  # fmt: skip
 ELEMENT = record(
     b="f8", f="f8",  # the ball's times the element's
     kick="f8", kick_threshold="f8",  # [m/s]
+    cooldown="f8",  # [s]
 )  # fmt: skip
 FACE = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", reach="f8", element="i8")
 CIRCLE = record(x="f8", y="f8", reach="f8", element="i8")
+ARC = record(
+    x="f8", y="f8", outer="f8", inner="f8",  # [m] distances from the centre at which it is struck; inner 0: never
+    sx="f8", sy="f8", ex="f8", ey="f8", span="i8",  # unit vectors to start and end; CLOSED, MINOR or MAJOR
+    element="i8",
+)  # fmt: skip
 SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", drain="i8", element="i8")
+RING = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
+EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
 RAIL = record(
     x="f8", y="f8", ux="f8", uy="f8", span="f8",  # the paddle's centre runs `span` metres from (x, y)
     half_width="f8", reach="f8", max_speed="f8", element="i8",
@@ -42,21 +52,36 @@ WORLD = record(
     time_hi="f8", time_lo="f8",
     scene="i8",
     bounces="i8", speed_capped="i8",  # counts since reset
+    events="i8",  # of the present call or step
+    drag_hi="f8", drag_lo="f8",  # when drag acted last
     dirty="i8",  # whether `hits` has entries of the last step
     rows="i8",  # of the ledger in use
 )  # fmt: skip
+# What a step without events reads comes first: it lies together in memory.
 BALL = record(
     x="f8", y="f8", vx="f8", vy="f8", hi="f8", lo="f8",  # the last event: state and instant; the flight starts here
-    slack="f8",  # [m] what counts as touching at that instant
-    touched="i8",  # how many elements it touched when it was last resolved
+    ax="f8", ay="f8",  # acceleration in this flight: in contact what the wall leaves of gravity and fields
     next_hi="f8", next_lo="f8", next_kind="i8",  # the ball's next event
+    status="i8",
+    gx="f8", gy="f8",  # acceleration: gravity and fields
+    contact="i8",  # the face that the ball slides on, FLYING or HELD
+    support="i8",  # the element that it is in contact with, -1 in free flight
+    settling="i8",  # 1 while the last bounces before a contact are summed
+    slack="f8",  # [m] what counts as touching at that instant
+    touched="i8",  # how many surfaces it touched when it was last resolved
     hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
     end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene
-    sensor_after="f8", sensor_index="i8",
+    sensor_after="f8", sensor_kind="i8", sensor_index="i8",
     zone_after="f8",  # duration to the next entry into or exit from a zone that a part can reach
     part_hi="f8", part_lo="f8", part_index="i8",  # next hit of a moving part, as far as its velocity is known
-    status="i8",
 )  # fmt: skip
+TOUCH = record(
+    nx="f8", ny="f8", ux="f8", uy="f8",  # unit normal to the ball, velocity of the surface [m/s]
+    bend="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
+    moves="i8",  # 1 of a part
+    element="i8", face="i8",  # the face of a wall's straight part, otherwise -1
+)  # fmt: skip
+COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
 ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
 PADDLE = record(
     offset="f8", velocity="f8", hi="f8", lo="f8",  # along the rail, at the instant of the last command or stop
@@ -67,12 +92,21 @@ LEDGER = record(
     vx0="f8", vy0="f8", vx1="f8", vy1="f8", ux="f8", uy="f8",
 )  # fmt: skip
 
+# Surfaces that one ball can touch at one instant; more than these are not seen.
+TOUCHES = 16
+
 # Ball status.
 OK, BUDGET, CRUSHED, OUT = 0, 1, 2, 3
 # Kinds of ledger rows.
 BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = 0, 1, 2, 3, 4, 5
 # Kinds of standing obstacles.
-ON_FACE, ON_CIRCLE = 0, 1
+ON_FACE, ON_CIRCLE, ON_ARC, OFF_END, RESOLVE = 0, 1, 2, 3, 4
+# Kinds of sensors.
+LINE, RING_ENTRY, FIELD_EDGE = 0, 1, 2
+# Spans of arcs: 2 pi, up to pi, more.
+CLOSED, MINOR, MAJOR = 0, 1, 2
+# `contact` of a ball that is in flight, and of one that rests.
+FLYING, HELD = -1, -2
 # Kinds of a ball's next event.
 NEXT_HIT, NEXT_PART, NEXT_SENSOR, NEXT_ZONE = 0, 1, 2, 3
 
@@ -82,11 +116,16 @@ class Tables(NamedTuple):
 
     scenes: Array
     elements: Array
-    gravity: Array | None  # (scenes, 2) m/s^2
+    gravity: Array | None  # (scenes, 2) m/s^2; there as well where a scene has a field
     faces: Array | None
+    gates: Array | None  # (scenes, faces) int8: 1 for a one-way wall; None: no scene has one
     circles: Array | None
+    arcs: Array | None
     sensors: Array | None
+    rings: Array | None
+    edges: Array | None  # of fields
     rails: Array | None
+    drags: Array | None  # (scenes,) factor on the velocity at each instant of a command; None: no scene has any
 
 
 class State(NamedTuple):
@@ -97,12 +136,22 @@ class State(NamedTuple):
     paddles: Array | None  # (worlds, paddles)
     zones: Array | None  # (worlds, balls, paddles)
     face_sides: Array | None  # (worlds, balls, faces) int8; only for a ball of no radius
+    arc_sides: Array | None  # (worlds, balls, arcs) int8; only for a ball of no radius
     sensor_sides: Array | None  # (worlds, balls, sensors) int8
+    ring_sides: Array | None  # (worlds, balls, rings) int8: 1 outside, -1 inside
+    edge_sides: Array | None  # (worlds, balls, edges) int8: 1 on the field's side
+    touches: Array  # (worlds, TOUCHES) TOUCH: what a ball touches at the instant that is resolved
+    disabled: Array | None  # (worlds, elements) int8; None where nothing can be switched off
+    cooling: Array | None  # (worlds, elements) COOLING; None where no scene has a cooldown
     hits: Array  # (worlds, elements) int64: how often each was struck or crossed in the last step
 
 
-def new_state(tables: Tables, worlds: int, balls: int, point: bool) -> State:
-    """Zeroed state for `worlds` worlds of `balls` balls each; `point` where the balls have no radius."""
+def new_state(tables: Tables, worlds: int, balls: int, point: bool, switches: bool = False) -> State:
+    """Zeroed state for `worlds` worlds of `balls` balls each.
+
+    point: whether the balls have no radius. switches: whether elements can be disabled.
+    """
+    elements = (worlds, tables.elements.shape[1])
 
     def sides(table: Array | None) -> Array | None:
         return None if table is None else np.zeros((worlds, balls, table.shape[1]), np.int8)
@@ -113,8 +162,14 @@ def new_state(tables: Tables, worlds: int, balls: int, point: bool) -> State:
         paddles=None if tables.rails is None else np.zeros((worlds, tables.rails.shape[1]), PADDLE),
         zones=None if tables.rails is None else np.zeros((worlds, balls, tables.rails.shape[1]), ZONE),
         face_sides=sides(tables.faces) if point else None,
+        arc_sides=sides(tables.arcs) if point else None,
         sensor_sides=sides(tables.sensors),
-        hits=np.zeros((worlds, tables.elements.shape[1]), np.int64),
+        ring_sides=sides(tables.rings),
+        edge_sides=sides(tables.edges),
+        touches=np.zeros((worlds, TOUCHES), TOUCH),
+        disabled=np.zeros(elements, np.int8) if switches else None,
+        cooling=np.zeros(elements, COOLING) if tables.elements["cooldown"].any() else None,
+        hits=np.zeros(elements, np.int64),
     )
 
 
@@ -127,7 +182,13 @@ def borrow_state(state: State) -> State:
         borrow(state.paddles),
         borrow(state.zones),
         borrow(state.face_sides),
+        borrow(state.arc_sides),
         borrow(state.sensor_sides),
+        borrow(state.ring_sides),
+        borrow(state.edge_sides),
+        borrow(state.touches),
+        borrow(state.disabled),
+        borrow(state.cooling),
         borrow(state.hits),
     )
 
@@ -140,7 +201,12 @@ def borrow_tables(tables: Tables) -> Tables:
         borrow(tables.elements),
         borrow(tables.gravity),
         borrow(tables.faces),
+        borrow(tables.gates),
         borrow(tables.circles),
+        borrow(tables.arcs),
         borrow(tables.sensors),
+        borrow(tables.rings),
+        borrow(tables.edges),
         borrow(tables.rails),
+        borrow(tables.drags),
     )

@@ -6,60 +6,60 @@ in its order.
 
 import math
 
-from bounce_env.engine.flight import moved, pull, sped, touch_tolerance
+from bounce_env.engine.arrive import arrive, face_crossings, snap
+from bounce_env.engine.contact import resolve
+from bounce_env.engine.crossing import accelerate, cross, take_sides
+from bounce_env.engine.flight import fly, touch_tolerance
 from bounce_env.engine.instant import before, since
-from bounce_env.engine.jit import Feature, Record, Table, function
+from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import (
     BUDGET,
-    CROSSING,
+    FLYING,
     NEXT_HIT,
     NEXT_SENSOR,
     NEXT_ZONE,
     OK,
     OUT,
     PART_STOPS,
+    RESOLVE,
     State,
     Tables,
 )
-from bounce_env.engine.resolve import arrive, bounce_from_all, count_hit, face_sensors, snap
-from bounce_env.engine.search import (
-    plan_flight,
-    plan_parts,
-    plan_sensor,
-    plan_zones,
-    rail_offset,
-    stop_instant,
-)
+from bounce_env.engine.parts import plan_zones, rail_offset, stop_instant
+from bounce_env.engine.search import plan_parts, pull, resolve_next
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, UNSURE
 
 # How a run of the loop ends.
 DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
+
+# Bounces, the end of a contact and the beginning of another, a small hop.
+ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 3
 
 
 @function
 def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table) -> int:
     """Process the events of world `w` up to and including an instant; DONE, OUT_OF_BUDGET or LEDGER_FULL.
 
+    At most `max_events` of them since `resume`.
     Unless DONE, the world's time is that of its last event, and the next call goes on from there.
     """
     world = state.worlds[w]
-    events = 0
     while True:
         hi, lo, ball, paddle = _next(state, tables, w, until_hi, until_lo)
         if ball < 0 and paddle < 0:
             world.time_hi, world.time_lo = until_hi, until_lo
             return DONE
-        if events >= max_events:
+        if world.events >= max_events:
             _stop_for_budget(state, w)
             return OUT_OF_BUDGET
-        if ledger is not None and world.rows + BOUNCES_AT_ONE_INSTANT > len(ledger):
+        if ledger is not None and world.rows + ROWS_AT_ONE_EVENT > len(ledger):
             return LEDGER_FULL
         world.time_hi, world.time_lo = hi, lo
         if ball >= 0:
-            events += _ball_event(state, tables, w, ball, ledger)
+            world.events += _ball_event(state, tables, w, ball, ledger)
         else:
             _part_stops(state, tables, w, paddle, ledger)
-            events += 1
+            world.events += 1
 
 
 @function
@@ -117,78 +117,33 @@ def _ball_event(state: State, tables: Tables, w: int, k: int, ledger: Table) -> 
     ball = state.balls[w, k]
     if ball.next_kind == NEXT_ZONE:
         scene = state.worlds[w].scene
-        gx, gy = pull(tables.gravity, scene)
+        gx, gy = pull(tables.gravity, ball)
         count = tables.scenes[scene].paddles
         plan_zones(ball, state.zones, tables.rails, count, w, k, scene, gx, gy, ball.zone_after)
         plan_parts(state, tables, w, k)
         return 0
     if ball.next_kind == NEXT_SENSOR:
-        _cross(state, tables, w, k, tables.sensors, state.sensor_sides, ledger)
+        cross(state, tables, w, k, ledger)
         return 1
+    planning = ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE
+    bounces = state.worlds[w].bounces
     _hit(state, tables, w, k, ledger)
-    return 1
-
-
-@function
-def _fly(ball: Record, gx: Feature, gy: Feature, t: float, hi: float, lo: float) -> None:
-    """Move the ball along its flight by `t` seconds and let that be where, at (hi, lo), a new one starts."""
-    ball.x, ball.y = moved(ball.x, ball.vx, gx, t), moved(ball.y, ball.vy, gy, t)
-    ball.vx, ball.vy = sped(ball.vx, gx, t), sped(ball.vy, gy, t)
-    ball.hi, ball.lo = hi, lo
+    # A ball that is only planned anew has met nothing.
+    return 0 if planning and state.worlds[w].bounces == bounces and ball.contact == FLYING else 1
 
 
 @function
 def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
-    gx, gy = pull(tables.gravity, scene)
+    gx, gy = pull(tables.gravity, ball)
     # A kept hit is a duration from the flight's start, so that its own rounding is all there is.
     t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
-    x0, y0 = ball.x, ball.y
-    ball.slack = touch_tolerance(head.extent, ball.vx, ball.vy, gx, gy, t)
-    _fly(ball, gx, gy, t, ball.next_hi, ball.next_lo)
-    travelled = abs(ball.x - x0) + abs(ball.y - y0)
+    x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
+    ball.slack = touch_tolerance(tables.scenes[scene].extent, ball.vx, ball.vy, gx, gy, t)
+    fly(ball, gx, gy, t, ball.next_hi, ball.next_lo)
     snap(ball, tables, state.paddles, w, scene)
-    arrive(ball, tables.faces, head.faces, state.face_sides, w, k, scene, travelled)
-    bounce_from_all(state, tables, w, k, ledger)
-    face_sensors(ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene)
-    plan_flight(state, tables, w, k)
-
-
-@function
-def _cross(state: State, tables: Tables, w: int, k: int, sensors: Table, sides: Table, ledger: Table) -> None:
-    """Report a crossing. The flight goes on as if there were no sensor, unless it is a drain."""
-    if sensors is None:
-        return
-    ball, world = state.balls[w, k], state.worlds[w]
-    gx, gy = pull(tables.gravity, world.scene)
-    index, after = ball.sensor_index, ball.sensor_after
-    sensor = sensors[world.scene, index]
-    sides[w, k, index] = -sides[w, k, index]
-    count_hit(state, w, sensor.element)
-    if ledger is not None:
-        _log_crossing(ledger, world, ball, k, sensor, gx, gy, after)
-    if sensor.drain:
-        _fly(ball, gx, gy, after, ball.next_hi, ball.next_lo)
-        ball.status = OUT
-        ball.next_hi, ball.next_lo = math.inf, 0.0
-    else:
-        plan_sensor(state, tables, w, k, after, index)
-
-
-@function
-def _log_crossing(
-    ledger: Table, world: Record, ball: Record, k: int, sensor: Record, gx: Feature, gy: Feature, after: float
-) -> None:
-    x, y = moved(ball.x, ball.vx, gx, after), moved(ball.y, ball.vy, gy, after)
-    vx, vy = sped(ball.vx, gx, after), sped(ball.vy, gy, after)
-    facing = 1.0 if vy * sensor.ux - vx * sensor.uy < 0.0 else -1.0
-    row = ledger[world.rows]
-    row.time, row.ball, row.element, row.kind = ball.next_hi, k, sensor.element, CROSSING
-    row.x, row.y, row.nx, row.ny = x, y, -facing * sensor.uy, facing * sensor.ux
-    row.vx0, row.vy0, row.vx1, row.vy1 = vx, vy, vx, vy
-    row.ux, row.uy = 0.0, 0.0
-    world.rows += 1
+    arrive(state, tables, w, k, x0, y0, vx0, vy0)
+    resolve(state, tables, w, k, ledger)
 
 
 @function
@@ -232,6 +187,7 @@ def command(state: State, tables: Tables, paddles: Table, rails: Table, w: int, 
     if paddles is None or rails is None:
         return
     paddle, world = paddles[w, m], state.worlds[w]
+    slow_down(state, tables, tables.drags, w)
     if velocity == paddle.command:
         return
     set_off(paddle, rails[world.scene, m], world, velocity)
@@ -240,11 +196,13 @@ def command(state: State, tables: Tables, paddles: Table, rails: Table, w: int, 
 
 @function
 def command_unwatched(
-    world: Record, paddles: Table, rails: Table, zones: Table, w: int, m: int, velocity: float
+    world: Record, paddles: Table, rails: Table, zones: Table, drags: Table, w: int, m: int, velocity: float
 ) -> bool:
-    """As `command`, where no ball is in the paddle's zone; otherwise it does nothing and returns False."""
+    """As `command`, where no ball is concerned; otherwise it does nothing and returns False."""
     if paddles is None or rails is None or zones is None:
         return True
+    if drags is not None:
+        return False
     paddle = paddles[w, m]
     if velocity == paddle.command:
         return True
@@ -287,32 +245,57 @@ def place(state: State, tables: Tables, w: int, k: int, x: float, y: float, vx: 
     """Put ball `k` into flight at (x, y) [m] with velocity (vx, vy) [m/s] at the world's present time."""
     ball, world = state.balls[w, k], state.worlds[w]
     head = tables.scenes[world.scene]
-    gx, gy = pull(tables.gravity, world.scene)
     ball.x, ball.y, ball.vx, ball.vy = x, y, vx, vy
     ball.hi, ball.lo = world.time_hi, world.time_lo
     ball.status = OK
-    ball.slack = touch_tolerance(head.extent, 0.0, 0.0, gx, gy, 0.0)
-    _take_sides(ball, tables.faces, head.faces, state.face_sides, w, k, world.scene, gx, gy)
-    _take_sides(ball, tables.sensors, head.sensors, state.sensor_sides, w, k, world.scene, gx, gy)
-    plan_flight(state, tables, w, k)
+    ball.contact, ball.support, ball.settling = FLYING, -1, 0
+    ball.slack = touch_tolerance(head.extent, 0.0, 0.0, None, None, 0.0)
+    take_sides(state, tables, w, k)
+    accelerate(state, tables, w, k)
+    ball.ax, ball.ay = ball.gx, ball.gy
+    _leave_zones(state.zones, w, k)
+    resolve_next(ball)
 
 
 @function
-def _take_sides(
-    ball: Record, lines: Table, count: int, sides: Table, w: int, k: int, scene: int, gx: Feature, gy: Feature
-) -> None:
-    """Sides at the start: on a line itself, the one the ball moves to; at rest, the one gravity presses it from."""
-    if lines is None or sides is None:
+def _leave_zones(zones: Table, w: int, k: int) -> None:
+    if zones is not None:
+        for m in range(zones.shape[2]):
+            zones[w, k, m].inside = 0
+
+
+@function
+def disturb(state: State, tables: Tables, w: int, k: int, drag: float, dvx: float, dvy: float) -> None:
+    """Let a new flight of ball `k` begin now, at `drag` times its velocity plus (dvx, dvy) [m/s].
+
+    It first bounces from what it touches, or comes into contact with it, or goes on as it was.
+    """
+    ball, world = state.balls[w, k], state.worlds[w]
+    if ball.status == OUT:
         return
-    for i in range(count):
-        line = lines[scene, i]
-        nx, ny = -line.uy, line.ux
-        lean = (ball.x - line.x) * nx + (ball.y - line.y) * ny
-        if abs(lean) <= ball.slack:
-            lean = ball.vx * nx + ball.vy * ny
-            if lean == 0.0 and gx is not None:
-                lean = -(gx * nx + gy * ny)
-        sides[w, k, i] = 1 if lean >= 0.0 else -1
+    gx, gy = pull(tables.gravity, ball)
+    t = since(world.time_hi, world.time_lo, ball.hi, ball.lo)
+    x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
+    ball.slack = touch_tolerance(tables.scenes[world.scene].extent, ball.vx, ball.vy, gx, gy, t)
+    fly(ball, gx, gy, t, world.time_hi, world.time_lo)
+    ball.hit_kind = RESOLVE
+    arrive(state, tables, w, k, x0, y0, vx0, vy0)
+    face_crossings(state, tables, w, k)
+    ball.vx, ball.vy = drag * ball.vx + dvx, drag * ball.vy + dvy
+    resolve_next(ball)
+
+
+@function
+def slow_down(state: State, tables: Tables, drags: Table, w: int) -> None:
+    """Let drag act on every ball: once at each instant at which a command is given, however many are."""
+    if drags is None:
+        return
+    world = state.worlds[w]
+    if world.drag_hi == world.time_hi and world.drag_lo == world.time_lo:
+        return
+    world.drag_hi, world.drag_lo = world.time_hi, world.time_lo
+    for k in range(state.balls.shape[1]):
+        disturb(state, tables, w, k, drags[world.scene], 0.0, 0.0)
 
 
 @function
@@ -321,8 +304,25 @@ def restart(state: State, tables: Tables, w: int) -> None:
     world = state.worlds[w]
     world.time_hi, world.time_lo = 0.0, 0.0
     world.bounces, world.speed_capped, world.rows = 0, 0, 0
+    world.drag_hi, world.drag_lo = -1.0, 0.0
     clear_hits(state, w)
+    _cool_down(state.cooling, w)
+    _switch_on(state.disabled, w)
     _rest_paddles(state.paddles, tables.rails, w, world.scene, tables.scenes[world.scene].paddles)
+
+
+@function
+def _cool_down(cooling: Table, w: int) -> None:
+    if cooling is not None:
+        for element in range(cooling.shape[1]):
+            cooling[w, element].hi, cooling[w, element].lo = 0.0, 0.0
+
+
+@function
+def _switch_on(disabled: Table, w: int) -> None:
+    if disabled is not None:
+        for element in range(disabled.shape[1]):
+            disabled[w, element] = 0
 
 
 @function
@@ -346,7 +346,8 @@ def clear_hits(state: State, w: int) -> None:
 
 @function
 def resume(state: State, w: int) -> None:
-    """Let balls that the event budget stopped go on."""
+    """Let balls that the event budget stopped go on, with a new budget."""
+    state.worlds[w].events = 0
     for k in range(state.balls.shape[1]):
         if state.balls[w, k].status == BUDGET:
             state.balls[w, k].status = OK

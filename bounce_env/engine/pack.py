@@ -6,8 +6,27 @@ from typing import Any
 
 import numpy as np
 
-from bounce_env.engine.layout import CIRCLE, ELEMENT, FACE, RAIL, SCENE, SENSOR, Array, Tables
-from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall
+from bounce_env.engine.jit import from_python
+from bounce_env.engine.layout import (
+    ARC,
+    CIRCLE,
+    CLOSED,
+    EDGE,
+    ELEMENT,
+    FACE,
+    MAJOR,
+    MINOR,
+    RAIL,
+    RING,
+    SCENE,
+    SENSOR,
+    Array,
+    Tables,
+)
+from bounce_env.engine.trig import sin_cos as compiled_sin_cos
+from bounce_env.scene import Arc, Bumper, Field, Paddle, Scene, Sensor, Wall
+
+sin_cos = from_python(compiled_sin_cos)
 
 Row = tuple[float, ...]
 Point = tuple[float, float]
@@ -23,18 +42,27 @@ def pack(scenes: Sequence[Scene]) -> Tables:
     faces = _table(FACE, scenes, _faces)
     circles = _table(CIRCLE, scenes, _circles)
     sensors = _table(SENSOR, scenes, _sensors)
+    arcs = _table(ARC, scenes, _arcs)
+    rings = _table(RING, scenes, _rings)
+    edges = _table(EDGE, scenes, _edges)
     rails = _table(RAIL, scenes, _rails)
-    heads = [(len(_faces(s)), len(_circles(s)), len(_sensors(s)), len(_rails(s)), extent(s), _cap(s)) for s in scenes]
+    rows = (_faces, _circles, _arcs, _sensors, _rings, _edges, _rails)
+    heads = [(*(len(of(s)) for of in rows), extent(s), _cap(s), s.rest_speed) for s in scenes]
     elements = _table(ELEMENT, scenes, _materials)
     gravity = np.array([scene.gravity for scene in scenes], np.float64)
     return Tables(
         scenes=np.array(heads, SCENE),
         elements=np.zeros((len(scenes), 0), ELEMENT) if elements is None else elements,
-        gravity=gravity if gravity.any() else None,
+        gravity=gravity if gravity.any() or edges is not None else None,
         faces=faces,
+        gates=_gates(scenes),
         circles=circles,
+        arcs=arcs,
         sensors=sensors,
+        rings=rings,
+        edges=edges,
         rails=rails,
+        drags=np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
     )
 
 
@@ -43,7 +71,10 @@ def extent(scene: Scene) -> float:
 
     Rounded up to a power of two, so that no digit of it depends on how a bounding box was computed.
     """
-    largest = max((abs(c) for c in scene.bounds), default=0.0) + scene.ball.radius
+    largest = max(abs(c) for c in scene.bounds)
+    # Distances to an arc are taken from its centre, which may lie far outside of what it occupies.
+    circles = (max(map(abs, e.center)) + e.radius for e in scene.elements if isinstance(e, Arc))
+    largest = max(largest, *circles, 0.0) + scene.ball.radius
     return math.ldexp(1.0, math.frexp(largest)[1])
 
 
@@ -75,7 +106,9 @@ def _cap(scene: Scene) -> float:
 def _materials(scene: Scene) -> list[Row]:
     ball = scene.ball
     return [
-        (0.0, 0.0, 0.0, 0.0) if isinstance(e, Sensor) else (ball.b * e.b, ball.f * e.f, e.kick, e.kick_threshold)
+        (0.0, 0.0, 0.0, 0.0, 0.0)
+        if isinstance(e, Sensor | Field)
+        else (ball.b * e.b, ball.f * e.f, e.kick, e.kick_threshold, e.cooldown)
         for e in scene.elements
     ]
 
@@ -88,6 +121,17 @@ def _faces(scene: Scene) -> list[Row]:
     return [(*w.start, *direction(w.start, w.end), scene.ball.radius, i) for i, w in _walls(scene)]
 
 
+def _gates(scenes: Sequence[Scene]) -> Array | None:
+    """Which faces belong to one-way walls; None where there are none."""
+    flags = [[wall.one_way for _, wall in _walls(scene)] for scene in scenes]
+    if not any(map(any, flags)):
+        return None
+    gates = np.zeros((len(scenes), max(map(len, flags))), np.int8)
+    for s, row in enumerate(flags):
+        gates[s, : len(row)] = row
+    return gates
+
+
 def _circles(scene: Scene) -> list[Row]:
     radius = scene.ball.radius
     rows: list[Row] = [(*e.center, e.radius + radius, i) for i, e in enumerate(scene.elements) if isinstance(e, Bumper)]
@@ -97,20 +141,68 @@ def _circles(scene: Scene) -> list[Row]:
 
 
 def _ends(scene: Scene) -> list[Row]:
-    """The round ends of walls. Of several at one point the first is kept: at a tie the first element is struck."""
+    """The round ends of walls and arcs. Of several at one point the first is kept: at a tie it is the one struck."""
     owner: dict[Point, int] = {}
-    for i, wall in _walls(scene):
-        for point in (wall.start, wall.end):
+    for i, element in enumerate(scene.elements):
+        for point in _end_points(element):
             owner.setdefault(point, i)
     return [(*point, scene.ball.radius, i) for point, i in owner.items()]
 
 
+def _end_points(element: object) -> tuple[Point, ...]:
+    if isinstance(element, Wall) and not element.one_way:
+        return element.start, element.end
+    if isinstance(element, Arc) and not element.closed:
+        (x, y), r = element.center, element.radius
+        angles = (element.start_angle, element.end_angle)
+        return tuple((x + r * c, y + r * s) for s, c in map(sin_cos, angles))
+    return ()
+
+
+def _arcs(scene: Scene) -> list[Row]:
+    rows: list[Row] = []
+    radius = scene.ball.radius
+    for i, arc in enumerate(scene.elements):
+        if isinstance(arc, Arc):
+            (sin_start, cos_start), (sin_end, cos_end) = sin_cos(arc.start_angle), sin_cos(arc.end_angle)
+            span = MINOR if arc.end_angle - arc.start_angle <= math.pi else MAJOR
+            reaches = (arc.radius + radius, max(arc.radius - radius, 0.0))
+            span = CLOSED if arc.closed else span
+            rows.append((*arc.center, *reaches, cos_start, sin_start, cos_end, sin_end, span, i))
+    return rows
+
+
 def _sensors(scene: Scene) -> list[Row]:
     return [
-        (*e.start, *direction(e.start, e.end), int(e.drain), i)
+        (*e.segment[0], *direction(*e.segment), int(e.drain), i)
         for i, e in enumerate(scene.elements)
-        if isinstance(e, Sensor)
+        if isinstance(e, Sensor) and e.segment is not None
     ]
+
+
+def _rings(scene: Scene) -> list[Row]:
+    return [
+        (*e.circle[0], e.circle[1], int(e.drain), i)
+        for i, e in enumerate(scene.elements)
+        if isinstance(e, Sensor) and e.circle is not None
+    ]
+
+
+def _edges(scene: Scene) -> list[Row]:
+    """The border lines of the fields, counter-clockwise; `last` is 1 on the last edge of each field."""
+    rows: list[Row] = []
+    for field in scene.elements:
+        if isinstance(field, Field):
+            points = field.points if _turns_left(field.points) else tuple(reversed(field.points))
+            for k, point in enumerate(points):
+                ux, uy, _ = direction(point, points[(k + 1) % len(points)])
+                rows.append((*point, ux, uy, *field.acceleration, int(k + 1 == len(points))))
+    return rows
+
+
+def _turns_left(points: Sequence[Point]) -> bool:
+    (ax, ay), (bx, by), (cx, cy) = points[:3]
+    return (bx - ax) * (cy - by) > (by - ay) * (cx - bx)
 
 
 def _rails(scene: Scene) -> list[Row]:

@@ -1,219 +1,230 @@
 """What happens at the instant of a hit: the ball is put on the surface, and all that it touches is bounced from.
 
 Of several elements touched at once the one closed on fastest is bounced from first, ties by element order, until none
-is closed on. So a corner is right from either side, and mirror images stay mirror images.
+is closed on. So a corner is right from either side, and mirror images stay mirror images. What the ball does then
+(whether it flies, slides or rests) is decided in `engine.contact`.
 """
 
 import math
 
+from bounce_env.engine.instant import before, later
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.law import bounce, capped
-from bounce_env.engine.layout import BOUNCE, NEXT_PART, ON_FACE, State, Tables
-from bounce_env.engine.search import rail_offset, side_on
-from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED
+from bounce_env.engine.layout import BOUNCE, State, Tables
+from bounce_env.engine.tolerances import (
+    BOUNCES_AT_ONE_INSTANT,
+    CORNER,
+    PRESSING,
+    ROLLING,
+    ULPS_OF_LENGTH,
+    ULPS_OF_SPEED,
+)
 
 
 @function
-def on_capsule(x: float, y: float, ux: float, uy: float, half_width: float) -> tuple[float, float, float]:
-    """From the nearest point of a capsule's core about the origin to (x, y): unit normal (nx, ny) and distance [m]."""
-    along = x * ux + y * uy
-    if abs(along) <= half_width:
-        height = y * ux - x * uy
-        facing = 1.0 if height >= 0.0 else -1.0
-        return -facing * uy, facing * ux, abs(height)
-    nearest = math.copysign(half_width, along)
-    dx, dy = x - nearest * ux, y - nearest * uy
-    distance = math.sqrt(dx * dx + dy * dy)
-    return dx / distance, dy / distance, distance
+def slow_speed(ball: Record, touch: Record) -> float:
+    """Closing slower than this [m/s] is no hit: the rounding of the ball's velocity, and of a curve's normal."""
+    return (ULPS_OF_SPEED + ball.slack * abs(touch.bend)) * (abs(ball.vx) + abs(ball.vy))
 
 
 @function
-def snap(ball: Record, tables: Tables, paddles: Table, w: int, scene: int) -> None:
-    """Put the ball on the surface of what it hits, along the normal: the rounding of the flight ends here."""
-    if ball.next_kind == NEXT_PART:
-        _snap_to_paddle(ball, tables.rails, paddles, w, scene)
-    elif ball.hit_kind == ON_FACE:
-        _snap_to_face(ball, tables.faces, scene)
-    else:
-        _snap_to_circle(ball, tables.circles, scene)
+def closing_speed(ball: Record, touch: Record) -> float:
+    """How fast [m/s] the ball and a surface that it touches come closer."""
+    return -((ball.vx - touch.ux) * touch.nx + (ball.vy - touch.uy) * touch.ny)
 
 
 @function
-def _snap_to_face(ball: Record, faces: Table, scene: int) -> None:
-    if faces is None:
-        return
-    face = faces[scene, ball.hit_index]
-    height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
-    error = height - math.copysign(face.reach, height)
-    ball.x += error * face.uy
-    ball.y -= error * face.ux
+def press_of(ball: Record, touch: Record) -> float:
+    """Acceleration [m/s^2] with which the ball is pressed on a surface that it moves along; 0 where it is not.
 
-
-@function
-def _snap_to_circle(ball: Record, circles: Table, scene: int) -> None:
-    if circles is None:
-        return
-    circle = circles[scene, ball.hit_index]
-    dx, dy = ball.x - circle.x, ball.y - circle.y
-    stretch = circle.reach / math.sqrt(dx * dx + dy * dy)
-    ball.x = circle.x + dx * stretch
-    ball.y = circle.y + dy * stretch
-
-
-@function
-def _snap_to_paddle(ball: Record, rails: Table, paddles: Table, w: int, scene: int) -> None:
-    if rails is None:
-        return
-    rail, paddle = rails[scene, ball.part_index], paddles[w, ball.part_index]
-    offset = rail_offset(paddle, ball.hi, ball.lo)
-    cx, cy = rail.x + offset * rail.ux, rail.y + offset * rail.uy
-    nx, ny, distance = on_capsule(ball.x - cx, ball.y - cy, rail.ux, rail.uy, rail.half_width)
-    ball.x += (rail.reach - distance) * nx
-    ball.y += (rail.reach - distance) * ny
-
-
-@function
-def arrive(ball: Record, faces: Table, count: int, sides: Table, w: int, k: int, scene: int, travelled: float) -> None:
-    """Bring a point ball's sides of the walls up to date: away from a wall its position tells, on it the flight.
-
-    A ball that has `travelled` [m] to a wall came from the side that it moves away from; one that has gone nowhere, or
-    along the wall, keeps the side it had.
+    Gravity's share, and on a curve what it takes to follow it.
     """
-    if faces is None or sides is None:
-        return
-    slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
-    for i in range(count):
-        face = faces[scene, i]
-        height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
-        rate = ball.vy * face.ux - ball.vx * face.uy
-        if abs(height) > ball.slack:
-            sides[w, k, i] = 1 if height > 0.0 else -1
-        elif travelled > ball.slack and abs(rate) > slow:
-            sides[w, k, i] = 1 if rate < 0.0 else -1
+    along = along_speed(ball, touch)
+    turn = touch.bend * along * along
+    press = -(ball.gx * touch.nx + ball.gy * touch.ny) - turn
+    noise = PRESSING * (abs(ball.gx) + abs(ball.gy) + abs(turn))
+    return press if press > noise else 0.0
 
 
 @function
-def face_sensors(ball: Record, sensors: Table, count: int, sides: Table, w: int, k: int, scene: int) -> None:
-    """Bring the ball's sides of the sensors up to date where its position tells; a crossing itself flips them."""
-    if sensors is None:
-        return
-    for i in range(count):
-        sensor = sensors[scene, i]
-        height = (ball.y - sensor.y) * sensor.ux - (ball.x - sensor.x) * sensor.uy
-        if abs(height) > ball.slack:
-            sides[w, k, i] = 1 if height > 0.0 else -1
+def is_soft(closing: float, press: float, extent: float) -> bool:
+    """Whether a hop at this speed [m/s] does not rise above the tolerance of lengths."""
+    return closing <= soft_speed(press, extent)
 
 
 @function
-def closest_face(
-    ball: Record, faces: Table, count: int, sides: Table, w: int, k: int, scene: int, best: float
-) -> tuple[float, int, float, float]:
-    """Of the touched walls the one closed on faster than `best`: (closing speed, element, nx, ny)."""
-    element, bx, by = -1, 0.0, 0.0
-    if faces is None:
-        return best, element, bx, by
-    for i in range(count):
-        face = faces[scene, i]
-        dx, dy = ball.x - face.x, ball.y - face.y
-        height = dy * face.ux - dx * face.uy
-        if abs(height) > face.reach + ball.slack:
+def soft_speed(press: float, extent: float) -> float:
+    """Speed [m/s] of a hop that rises by the tolerance of lengths."""
+    return math.sqrt(2.0 * press * (ULPS_OF_LENGTH * extent))
+
+
+@function
+def rolling_speed(ball: Record, touch: Record, press: float, extent: float) -> float:
+    """Speed [m/s] of the small hops in which a ball rolls on a curved surface that it is pressed on.
+
+    A share of the speed at which it would let go of the curve; for a slow ball less, so that one in a hollow between
+    several surfaces comes down to rest.
+    """
+    return min(
+        ROLLING * math.sqrt(press / abs(touch.bend)),
+        max(0.5 * abs(along_speed(ball, touch)), 4.0 * soft_speed(press, extent)),
+    )
+
+
+@function
+def along_speed(ball: Record, touch: Record) -> float:
+    """Speed [m/s] of the ball along a surface that it touches, counter-clockwise about it positive."""
+    return (ball.vy - touch.uy) * touch.nx - (ball.vx - touch.ux) * touch.ny
+
+
+@function
+def fastest_closing(ball: Record, touches: Table, w: int) -> tuple[int, float]:
+    """Of the touched surfaces the one closed on fastest, ties by element: (index, speed), -1 if none is."""
+    best, index, element = 0.0, -1, -1
+    for i in range(ball.touched):
+        touch = touches[w, i]
+        closing = closing_speed(ball, touch)
+        slow = slow_speed(ball, touch)
+        if closing <= slow:
             continue
-        along = dx * face.ux + dy * face.uy
-        if along < -ball.slack or along > face.length + ball.slack:
-            continue
-        ball.touched += 1
-        facing = float(side_on(sides, w, k, i))
-        if facing == 0.0:
-            facing = 1.0 if height >= 0.0 else -1.0
-        nx, ny = -facing * face.uy, facing * face.ux
-        closing = -(ball.vx * nx + ball.vy * ny)
-        if closing > best:
-            best, element, bx, by = closing, face.element, nx, ny
-    return best, element, bx, by
+        # Alike but for rounding is a tie.
+        if closing > best + slow or (closing >= best - slow and touch.element < element):
+            best, index, element = closing, i, touch.element
+    return index, best
 
 
 @function
-def closest_circle(
-    ball: Record, circles: Table, count: int, scene: int, best: float, element: int, bx: float, by: float
-) -> tuple[float, int, float, float]:
-    """As `closest_face`, for bumpers and the ends of walls; at a tie the element that comes first."""
-    if circles is None:
-        return best, element, bx, by
-    for i in range(count):
-        circle = circles[scene, i]
-        dx, dy = ball.x - circle.x, ball.y - circle.y
-        reach = circle.reach + ball.slack
-        square = dx * dx + dy * dy
-        if square > reach * reach:
-            continue
-        ball.touched += 1
-        distance = math.sqrt(square)
-        nx, ny = dx / distance, dy / distance
-        closing = -(ball.vx * nx + ball.vy * ny)
-        if closing > best or (closing == best and circle.element < element):
-            best, element, bx, by = closing, circle.element, nx, ny
-    return best, element, bx, by
+def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table) -> tuple[int, int, float, float]:
+    """Bounce from everything that the ball touches and closes on, fastest first.
 
-
-@function
-def closest_paddle(
-    ball: Record,
-    rails: Table,
-    paddles: Table,
-    count: int,
-    w: int,
-    scene: int,
-    best: float,
-    element: int,
-    bx: float,
-    by: float,
-) -> tuple[float, int, float, float, float, float]:
-    """As `closest_circle`, for paddles, with the surface's velocity: (speed, element, nx, ny, ux, uy)."""
-    ux, uy = 0.0, 0.0
-    if rails is None:
-        return best, element, bx, by, ux, uy
-    for m in range(count):
-        rail, paddle = rails[scene, m], paddles[w, m]
-        offset = rail_offset(paddle, ball.hi, ball.lo)
-        dx, dy = ball.x - (rail.x + offset * rail.ux), ball.y - (rail.y + offset * rail.uy)
-        nx, ny, distance = on_capsule(dx, dy, rail.ux, rail.uy, rail.half_width)
-        if distance > rail.reach + ball.slack:
-            continue
-        ball.touched += 1
-        sx, sy = paddle.velocity * rail.ux, paddle.velocity * rail.uy
-        closing = -((ball.vx - sx) * nx + (ball.vy - sy) * ny)
-        if closing > best or (closing == best and rail.element < element):
-            best, element, bx, by, ux, uy = closing, rail.element, nx, ny, sx, sy
-    return best, element, bx, by, ux, uy
-
-
-@function
-def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table) -> int:
-    """Bounce from everything that the ball touches and closes on, fastest first; returns how many bounces that took."""
-    ball, world = state.balls[w, k], state.worlds[w]
-    scene = world.scene
-    head = tables.scenes[scene]
-    for done in range(BOUNCES_AT_ONE_INSTANT):
-        slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
-        ball.touched = 0
-        best, element, nx, ny = closest_face(ball, tables.faces, head.faces, state.face_sides, w, k, scene, slow)
-        best, element, nx, ny = closest_circle(ball, tables.circles, head.circles, scene, best, element, nx, ny)
-        best, element, nx, ny, ux, uy = closest_paddle(
-            ball, tables.rails, state.paddles, head.paddles, w, scene, best, element, nx, ny
-        )
-        if element < 0:
-            return done
-        material = tables.elements[scene, element]
-        vx0, vy0 = ball.vx, ball.vy
-        vx, vy = bounce(vx0, vy0, nx, ny, ux, uy, material.b, material.f, material.kick, material.kick_threshold)
-        ball.vx, ball.vy, over = capped(vx, vy, nx, ny, ux, uy, head.max_speed)
-        world.speed_capped += over
-        world.bounces += 1
-        count_hit(state, w, element)
-        log(ledger, world, ball, k, element, BOUNCE, nx, ny, vx0, vy0, ux, uy)
+    Where bounces in a corner are taken to be over, what closes is taken from the velocity. Returns (single, corner, vx,
+    vy): the touched surface that was bounced from if it was just one, without a kick; the one that led to the end of
+    bounces in a corner; -1 where there is none; and the velocity [m/s] before the latter, which is not yet logged.
+    """
+    ball = state.balls[w, k]
+    for _ in range(BOUNCES_AT_ONE_INSTANT):
+        i, closing = fastest_closing(ball, state.touches, w)
+        if i < 0:
+            return -1, -1, ball.vx, ball.vy
+        if ball.touched > 1 and _is_damped(state, tables, w, k, i, closing):
+            break
+        kicked = _bounce_from(state, tables, w, k, i, closing, ledger)
         if ball.touched == 1:
-            return done + 1
-    return BOUNCES_AT_ONE_INSTANT
+            return (-1 if kicked else i), -1, ball.vx, ball.vy
+    i, _ = fastest_closing(ball, state.touches, w)
+    vx, vy = ball.vx, ball.vy
+    if i >= 0:
+        _project(ball, state.touches, w, i)
+    return -1, i, vx, vy
+
+
+@function
+def _is_damped(state: State, tables: Tables, w: int, k: int, i: int, closing: float) -> bool:
+    """Whether a ball in a corner comes so slowly that its bounces there are taken to be over."""
+    ball, world = state.balls[w, k], state.worlds[w]
+    head = tables.scenes[world.scene]
+    if tables.gravity is None:
+        return False
+    touch = state.touches[w, i]
+    material = tables.elements[world.scene, touch.element]
+    press = press_of(ball, touch)
+    if press == 0.0 or (material.kick > 0.0 and closing > material.kick_threshold):
+        return False
+    return closing < head.rest_speed or is_soft(closing, press, CORNER * head.extent)
+
+
+@function
+def _bounce_from(state: State, tables: Tables, w: int, k: int, i: int, closing: float, ledger: Table) -> bool:
+    """Bounce from one touched surface; returns whether it gave a kick."""
+    ball, world, touch = state.balls[w, k], state.worlds[w], state.touches[w, i]
+    head, material = tables.scenes[world.scene], tables.elements[world.scene, touch.element]
+    rebound, f = material.b * closing, material.f
+    if tables.gravity is not None or touch.bend < 0.0:
+        rebound, f = _softened(ball, touch, head, material, closing, rebound, f)
+    kicked = material.kick > 0.0 and closing > material.kick_threshold
+    if kicked and _is_ready(state.cooling, ball, w, touch.element, material.cooldown):
+        rebound += material.kick
+    else:
+        kicked = False
+    vx0, vy0 = ball.vx, ball.vy
+    vx, vy = bounce(vx0, vy0, touch.nx, touch.ny, touch.ux, touch.uy, rebound, f)
+    ball.vx, ball.vy, over = capped(vx, vy, touch.nx, touch.ny, touch.ux, touch.uy, head.max_speed)
+    world.speed_capped += over
+    count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    return kicked
+
+
+@function
+def _softened(
+    ball: Record, touch: Record, head: Record, material: Record, closing: float, rebound: float, f: float
+) -> tuple[float, float]:
+    """Rebound [m/s] and friction where the ball is pressed on the surface: absorbed, or on a curve the smallest one."""
+    press = press_of(ball, touch)
+    if press == 0.0:
+        return rebound, f
+    rolling = touch.bend != 0.0 and closing <= 1.5 * rolling_speed(ball, touch, press, head.extent)
+    if closing < head.rest_speed or (rolling and head.rest_speed > 0.0):
+        return 0.0, (1.0 if f > 0.0 else 0.0)
+    # Where nothing is lost bounces do not die away, but for those of the smallest hops there are.
+    lossless = material.b >= 1.0 and closing > 8.0 * soft_speed(press, head.extent)
+    if touch.bend == 0.0 or lossless:
+        return rebound, f
+    smallest = rolling_speed(ball, touch, press, head.extent)
+    holds = f == 0.0 or (f < 1.0 and head.rest_speed == 0.0)
+    if rebound >= smallest or (rebound == 0.0 and holds):
+        return rebound, f
+    if is_soft(closing, press, head.extent):
+        return 0.0, f
+    if abs(along_speed(ball, touch)) <= 2.0 * smallest:
+        # Slow on the curve: let the bounces die away, so that a ball between several surfaces comes to touch them.
+        smallest = min(smallest, 0.5 * closing)
+    return max(rebound, smallest), f
+
+
+@function
+def _is_ready(cooling: Table, ball: Record, w: int, element: int, cooldown: float) -> bool:
+    """Whether an element gives a kick now; if so it begins to cool down."""
+    if cooling is None:
+        return True
+    cool = cooling[w, element]
+    if before(ball.hi, ball.lo, cool.hi, cool.lo):
+        return False
+    if cooldown > 0.0:
+        cool.hi, cool.lo = later(ball.hi, ball.lo, cooldown)
+    return True
+
+
+@function
+def _project(ball: Record, touches: Table, w: int, first: int) -> None:
+    """Take from the velocity what closes on any touched surface: along one of them where the others allow, else all.
+
+    The one closed on fastest (`first`) is tried first.
+    """
+    vx, vy = ball.vx, ball.vy
+    for n in range(ball.touched):
+        touch = touches[w, (first + n) % ball.touched]
+        ball.vx, ball.vy = vx, vy
+        closing = closing_speed(ball, touch)
+        ball.vx, ball.vy = vx + closing * touch.nx, vy + closing * touch.ny
+        allowed = closing > 0.0
+        for j in range(ball.touched):
+            # Seen from the velocity that the ball had: what is left of it may be all rounding.
+            noise = slow_speed(ball, touches[w, j]) + ULPS_OF_SPEED * (abs(vx) + abs(vy))
+            allowed = allowed and closing_speed(ball, touches[w, j]) <= noise
+        if allowed:
+            return
+    ball.vx, ball.vy = touches[w, first].ux, touches[w, first].uy
+
+
+@function
+def count_bounce(state: State, w: int, k: int, touch: Record, vx0: float, vy0: float, ledger: Table) -> None:
+    """Count a bounce from a touched surface, and log it."""
+    state.worlds[w].bounces += 1
+    count_hit(state, w, touch.element)
+    log(
+        ledger, state.worlds[w], state.balls[w, k], k, touch.element, BOUNCE,
+        touch.nx, touch.ny, vx0, vy0, touch.ux, touch.uy,
+    )  # fmt: skip
 
 
 @function

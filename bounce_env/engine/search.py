@@ -1,69 +1,160 @@
-"""What a ball meets next, from its last event: standing elements, sensors, the reach of parts, moving parts.
+"""What a ball meets next, from its last event: standing elements first, whose earliest hit bounds all other searches.
 
 Everything standing is searched once per flight and kept as a duration from the flight's start; the ball's search for a
 moving part starts at the later of the ball's last event and the part's last command or stop. Neither depends on where
-a step ends.
+a step ends. A ball in contact with a wall flies, too: along its line, under what the wall leaves of its acceleration.
 """
 
 import math
 
-from bounce_env.engine.flight import dot, moved, pull, sped, swept, time_in_scene, touch_tolerance
-from bounce_env.engine.impact import capsule_time, circle_time, face_time, facing_time, falling_time
-from bounce_env.engine.instant import before, later, since
-from bounce_env.engine.jit import Feature, Record, Table, function
+from bounce_env.engine.arc import arc_time
+from bounce_env.engine.flight import moved, swept, time_in_scene
+from bounce_env.engine.impact import circle_time, face_time, facing_time, falling_time
+from bounce_env.engine.instant import before, later
+from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
 from bounce_env.engine.layout import (
     NEXT_HIT,
     NEXT_PART,
     NEXT_SENSOR,
     NEXT_ZONE,
+    OFF_END,
+    ON_ARC,
     ON_CIRCLE,
     ON_FACE,
+    RESOLVE,
     State,
     Tables,
 )
+from bounce_env.engine.parts import is_off, plan_paddles, plan_zones
+from bounce_env.engine.sensing import next_crossing
+from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
+
+
+def _no_pull(gravity: Table, ball: Record) -> tuple[None, None]:
+    return None, None
+
+
+@function_of_feature(absent=_no_pull)
+def pull(gravity: Table, ball: Record) -> tuple[Feature, Feature]:
+    """The acceleration [m/s^2] of the ball's present flight; (None, None) where no scene of the batch has any."""
+    return ball.ax, ball.ay
 
 
 @function
 def side_on(sides: Table, w: int, k: int, i: int) -> int:
-    """On which side, 1 or -1, of face `i` a touching ball of no radius is; 0 for a disc, whose centre tells."""
+    """On which side, 1 or -1, of surface `i` a touching ball of no radius is; 0 for a disc, whose centre tells."""
     if sides is None:
         return 0
     return sides[w, k, i]
 
 
 @function
+def is_gate(gates: Table, scene: int, i: int) -> bool:
+    """Whether face `i` is that of a one-way wall, which is struck from the left only."""
+    if gates is None:
+        return False
+    return gates[scene, i] != 0
+
+
+@function
+def contact_normal(state: State, faces: Table, w: int, k: int) -> tuple[float, float]:
+    """Unit normal, to the ball, of the wall that the ball is in contact with; (0, 0) if there is none."""
+    ball = state.balls[w, k]
+    if faces is None or ball.contact < 0:
+        return 0.0, 0.0
+    face = faces[state.worlds[w].scene, ball.contact]
+    side = side_on(state.face_sides, w, k, ball.contact)
+    height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
+    facing = 1.0 if side > 0 or (side == 0 and height >= 0.0) else -1.0
+    return -facing * face.uy, facing * face.ux
+
+
+@function
+def _is_level(ball: Record, face: Record, gx: Feature, gy: Feature) -> bool:
+    """Whether a ball that slides touches a wall and keeps doing so: the wall is a continuation of the one it is on."""
+    height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
+    if abs(abs(height) - face.reach) > ball.slack:
+        return False
+    rate = ball.vy * face.ux - ball.vx * face.uy
+    if abs(rate) > 4.0 * ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy)):
+        return False
+    if gx is None:
+        return True
+    return abs(gy * face.ux - gx * face.uy) <= PRESSING * (abs(gx) + abs(gy))
+
+
+@function
 def first_face(
     ball: Record,
     faces: Table,
+    gates: Table,
     count: int,
     sides: Table,
+    disabled: Table,
     w: int,
     k: int,
     scene: int,
     gx: Feature,
     gy: Feature,
+    nx: float,
+    ny: float,
     horizon: float,
 ) -> tuple[float, int]:
-    """Earliest hit of a wall's straight part before `horizon`: (duration, face)."""
+    """Earliest hit of a wall's straight part before `horizon`: (duration, face). (nx, ny): see `contact_normal`."""
     best, index = horizon, -1
     if faces is None:
         return best, index
     for i in range(count):
         face = faces[scene, i]
-        t = face_time(
-            ball.x - face.x, ball.y - face.y, ball.vx, ball.vy, gx, gy,
-            face.ux, face.uy, face.length, face.reach, side_on(sides, w, k, i), ball.slack, best,
-        )  # fmt: skip
-        if t < best:
+        if is_off(disabled, w, face.element):
+            continue
+        if ball.contact >= 0 and (i == ball.contact or _is_level(ball, face, gx, gy)):
+            continue
+        x, y, side = ball.x - face.x, ball.y - face.y, side_on(sides, w, k, i)
+        if is_gate(gates, scene, i):
+            t = facing_time(
+                x, y, ball.vx, ball.vy, gx, gy, face.ux, face.uy, face.length, face.reach, 1.0, side, ball.slack, best
+            )
+        else:
+            t = face_time(
+                x, y, ball.vx, ball.vy, gx, gy, face.ux, face.uy, face.length, face.reach, side, ball.slack, best
+            )
+        if t < best and not _slides_over(ball, face, nx, ny, gx, gy, t):
             best, index = t, i
     return best, index
 
 
 @function
+def _slides_over(ball: Record, face: Record, nx: float, ny: float, gx: Feature, gy: Feature, t: float) -> bool:
+    """Whether a point that slides on a wall with normal (nx, ny) passes, after `t` seconds, an end beneath it."""
+    if ball.contact < 0 or face.reach > 0.0:
+        return False
+    along = (moved(ball.x, ball.vx, gx, t) - face.x) * face.ux + (moved(ball.y, ball.vy, gy, t) - face.y) * face.uy
+    rise = face.ux * nx + face.uy * ny
+    return (along <= ball.slack and rise <= 0.0) or (along >= face.length - ball.slack and rise >= 0.0)
+
+
+@function
+def _slides_past(ball: Record, nx: float, ny: float, x: float, y: float, reach: float) -> bool:
+    """Whether a ball that slides on a wall with normal (nx, ny) just touches a circle that has it at (x, y)."""
+    return ball.contact >= 0 and x * nx + y * ny >= reach - ball.slack
+
+
+@function
 def first_circle(
-    ball: Record, circles: Table, count: int, scene: int, gx: Feature, gy: Feature, horizon: float
+    ball: Record,
+    circles: Table,
+    count: int,
+    disabled: Table,
+    w: int,
+    scene: int,
+    gx: Feature,
+    gy: Feature,
+    nx: float,
+    ny: float,
+    horizon: float,
 ) -> tuple[float, int]:
-    """Earliest hit of a bumper or a wall's end before `horizon`: (duration, circle).
+    """Earliest hit of a bumper or an end before `horizon`: (duration, circle). (nx, ny): see `contact_normal`.
 
     A circle that the box swept by the flight does not reach cannot be hit; most are rejected by that alone.
     """
@@ -78,141 +169,62 @@ def first_circle(
         # Written so that a box with infinite or undefined borders (an unbounded flight) rejects nothing.
         if circle.x + reach < left or circle.x - reach > right or circle.y + reach < below or circle.y - reach > above:
             continue
-        t = circle_time(ball.x - circle.x, ball.y - circle.y, ball.vx, ball.vy, gx, gy, circle.reach, ball.slack, best)
+        x, y = ball.x - circle.x, ball.y - circle.y
+        if is_off(disabled, w, circle.element) or _slides_past(ball, nx, ny, x, y, circle.reach):
+            continue
+        t = circle_time(x, y, ball.vx, ball.vy, gx, gy, circle.reach, ball.slack, best)
         if t < best:
             best, index = t, i
     return best, index
 
 
 @function
-def next_sensor(
+def first_arc(
     ball: Record,
-    sensors: Table,
+    arcs: Table,
     count: int,
     sides: Table,
+    disabled: Table,
     w: int,
     k: int,
     scene: int,
     gx: Feature,
     gy: Feature,
-    after: float,
-    after_index: int,
+    nx: float,
+    ny: float,
+    horizon: float,
 ) -> tuple[float, int]:
-    """Earliest crossing of a sensor by the ball's centre later than the crossing (after, after_index), up to the hit.
-
-    Crossings at one instant come in the order of the elements. Returns (duration, sensor).
-    """
-    best, index = math.inf, -1
-    if sensors is None:
+    """Earliest hit of an arc before `horizon`: (duration, arc)."""
+    best, index = horizon, -1
+    if arcs is None:
         return best, index
+    left, right = swept(ball.x, ball.vx, gx, horizon)
+    below, above = swept(ball.y, ball.vy, gy, horizon)
     for i in range(count):
-        sensor = sensors[scene, i]
-        x, y = ball.x - sensor.x, ball.y - sensor.y
-        for facing in (1.0, -1.0):
-            t = facing_time(
-                x, y, ball.vx, ball.vy, gx, gy, sensor.ux, sensor.uy, sensor.length, 0.0,
-                facing, sides[w, k, i], ball.slack, ball.end_after,
-            )  # fmt: skip
-            if t < best and (t > after or (t == after and i > after_index)):
-                best, index = t, i
+        arc = arcs[scene, i]
+        reach = arc.outer + ball.slack
+        if arc.x + reach < left or arc.x - reach > right or arc.y + reach < below or arc.y - reach > above:
+            continue
+        if is_off(disabled, w, arc.element):
+            continue
+        x, y = ball.x - arc.x, ball.y - arc.y
+        past = _slides_past(ball, nx, ny, x, y, arc.outer)
+        t = arc_time(arc, x, y, ball.vx, ball.vy, gx, gy, side_on(sides, w, k, i), past, ball.slack, best)
+        if t < best:
+            best, index = t, i
     return best, index
 
 
 @function
-def zone_change(height: float, rate: float, pull: Feature, border: float, inside: bool, after: float) -> float:
-    """When |height + rate t + pull t^2 / 2| next passes `border`, from the flight's start, no earlier than `after`."""
-    best = math.inf
-    for facing in (1.0, -1.0):
-        gap = facing * height - border
-        if inside:
-            t = falling_time(-gap, gap > 0.0, -facing * rate, dot(pull, 0.0, -facing, 0.0))
-        else:
-            t = falling_time(gap, gap < 0.0, facing * rate, dot(pull, 0.0, facing, 0.0))
-        if t >= after:
-            best = min(best, t)
-    return best
-
-
-@function
-def plan_zones(
-    ball: Record,
-    zones: Table,
-    rails: Table,
-    count: int,
-    w: int,
-    k: int,
-    scene: int,
-    gx: Feature,
-    gy: Feature,
-    now: float,
-) -> None:
-    """Bring the ball's zones up to `now` seconds into its flight, and set when the next of them changes.
-
-    The zone of a paddle is the strip along its rail outside which it cannot be met. It is a static sensor of the
-    engine's own: passing its border neither re-bases the flight nor shows in the ledger.
-    """
-    ball.zone_after = math.inf
-    if rails is None or zones is None:
-        return
-    for m in range(count):
-        rail, zone = rails[scene, m], zones[w, k, m]
-        height = (ball.y - rail.y) * rail.ux - (ball.x - rail.x) * rail.uy
-        # The margin keeps rounding of the border from hiding a hit.
-        border = 1.01 * rail.reach
-        if now == 0.0:
-            zone.inside, zone.after = 1 if abs(height) <= border else 0, 0.0
-        elif zone.after <= now:
-            zone.inside = 1 - zone.inside
-        if zone.after <= now:
-            rate = ball.vy * rail.ux - ball.vx * rail.uy
-            zone.after = zone_change(height, rate, dot(gx, gy, -rail.uy, rail.ux), border, zone.inside == 1, now)
-            if zone.after > ball.end_after:
-                zone.after = math.inf
-        ball.zone_after = min(ball.zone_after, zone.after)
-
-
-@function
-def rail_offset(paddle: Record, hi: float, lo: float) -> float:
-    """Where on its rail [m] the paddle is at an instant of its present motion."""
-    return paddle.offset + paddle.velocity * since(hi, lo, paddle.hi, paddle.lo)
-
-
-@function
-def stop_instant(paddle: Record, rail: Record) -> tuple[float, float]:
-    """Instant at which the paddle's present motion ends at a stop: (hi, lo), inf if it stands."""
-    if paddle.velocity == 0.0:
-        return math.inf, 0.0
-    room = rail.span - paddle.offset if paddle.velocity > 0.0 else paddle.offset
-    return later(paddle.hi, paddle.lo, room / abs(paddle.velocity))
-
-
-@function
-def meet_paddle(
-    ball: Record, paddle: Record, rail: Record, extent: float, gx: Feature, gy: Feature
-) -> tuple[float, float]:
-    """Instant at which the ball hits the paddle while both keep their present motion: (hi, lo), inf if not.
-
-    In the paddle's frame the ball flies as ever and the paddle is a standing capsule.
-    """
-    if before(ball.hi, ball.lo, paddle.hi, paddle.lo):
-        hi, lo = paddle.hi, paddle.lo
-    else:
-        hi, lo = ball.hi, ball.lo
-    t = since(hi, lo, ball.hi, ball.lo)
-    stop_hi, stop_lo = stop_instant(paddle, rail)
-    horizon = min(ball.end_after - t, since(stop_hi, stop_lo, hi, lo))
-    offset = rail_offset(paddle, hi, lo)
-    after = capsule_time(
-        moved(ball.x, ball.vx, gx, t) - (rail.x + offset * rail.ux),
-        moved(ball.y, ball.vy, gy, t) - (rail.y + offset * rail.uy),
-        sped(ball.vx, gx, t) - paddle.velocity * rail.ux,
-        sped(ball.vy, gy, t) - paddle.velocity * rail.uy,
-        gx, gy, rail.ux, rail.uy, rail.half_width, rail.reach,
-        touch_tolerance(extent, ball.vx, ball.vy, gx, gy, t), horizon,
-    )  # fmt: skip
-    if after == math.inf:
-        return math.inf, 0.0
-    return later(hi, lo, after)
+def end_of_wall(ball: Record, faces: Table, scene: int, gx: Feature, gy: Feature) -> float:
+    """Duration after which a ball that slides on a wall leaves it at one of its ends; inf if there is none to leave."""
+    if faces is None or gx is None or ball.contact < 0:
+        return math.inf
+    face = faces[scene, ball.contact]
+    along = (ball.x - face.x) * face.ux + (ball.y - face.y) * face.uy
+    rate = ball.vx * face.ux + ball.vy * face.uy
+    pull = gx * face.ux + gy * face.uy
+    return min(falling_time(along, False, rate, pull), falling_time(face.length - along, False, -rate, -pull))
 
 
 @function
@@ -220,66 +232,81 @@ def plan_parts(state: State, tables: Tables, w: int, k: int) -> None:
     """Search the parts in whose zone a ball is, and set its next event."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = tables.scenes[scene]
-    gx, gy = pull(tables.gravity, scene)
-    _plan_paddles(ball, tables.rails, state.paddles, state.zones, w, k, scene, head.paddles, head.extent, gx, gy)
+    gx, gy = pull(tables.gravity, ball)
+    plan_paddles(
+        ball, tables.rails, state.paddles, state.zones, state.disabled, w, k, scene, head.paddles, head.extent, gx, gy
+    )
     schedule(ball)
 
 
 @function
-def _plan_paddles(
-    ball: Record,
-    rails: Table,
-    paddles: Table,
-    zones: Table,
-    w: int,
-    k: int,
-    scene: int,
-    count: int,
-    extent: float,
-    gx: Feature,
-    gy: Feature,
-) -> None:
-    ball.part_hi, ball.part_lo, ball.part_index = math.inf, 0.0, -1
-    if rails is None or paddles is None or zones is None:
-        return
-    for m in range(count):
-        if zones[w, k, m].inside:
-            hi, lo = meet_paddle(ball, paddles[w, m], rails[scene, m], extent, gx, gy)
-            if before(hi, lo, ball.part_hi, ball.part_lo):
-                ball.part_hi, ball.part_lo, ball.part_index = hi, lo, m
-
-
-@function
-def plan_sensor(state: State, tables: Tables, w: int, k: int, after: float, after_index: int) -> None:
-    """Search the next crossing after (after, after_index) in the present flight, and set the ball's next event."""
-    ball, scene = state.balls[w, k], state.worlds[w].scene
-    gx, gy = pull(tables.gravity, scene)
-    ball.sensor_after, ball.sensor_index = next_sensor(
-        ball, tables.sensors, tables.scenes[scene].sensors, state.sensor_sides, w, k, scene, gx, gy,
-        after, after_index,
-    )  # fmt: skip
+def plan_crossing(state: State, tables: Tables, w: int, k: int, after: float, kind: int, index: int) -> None:
+    """Search the next crossing after (after, kind, index) in the present flight, and set the ball's next event."""
+    ball = state.balls[w, k]
+    gx, gy = pull(tables.gravity, ball)
+    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(
+        state, tables, w, k, gx, gy, after, kind, index
+    )
     schedule(ball)
 
 
 @function
-def plan_flight(state: State, tables: Tables, w: int, k: int) -> None:
-    """Search everything for a flight that starts now: once per bounce."""
+def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
+    """Search everything that stands: what ends the flight that begins now, and when."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = tables.scenes[scene]
-    gx, gy = pull(tables.gravity, scene)
+    gx, gy = pull(tables.gravity, ball)
+    nx, ny = contact_normal(state, tables.faces, w, k)
     horizon = time_in_scene(head.extent, ball.x, ball.y, ball.vx, ball.vy, gx, gy)
-    after, face = first_face(ball, tables.faces, head.faces, state.face_sides, w, k, scene, gx, gy, horizon)
+    after, face = first_face(
+        ball,
+        tables.faces,
+        tables.gates,
+        head.faces,
+        state.face_sides,
+        state.disabled,
+        w,
+        k,
+        scene,
+        gx,
+        gy,
+        nx,
+        ny,
+        horizon,
+    )
     ball.hit_kind, ball.hit_index = ON_FACE, face
-    after, circle = first_circle(ball, tables.circles, head.circles, scene, gx, gy, after)
+    after, circle = first_circle(ball, tables.circles, head.circles, state.disabled, w, scene, gx, gy, nx, ny, after)
     if circle >= 0:
         ball.hit_kind, ball.hit_index = ON_CIRCLE, circle
-    ball.end_after = after
-    ball.hit_after = after if face >= 0 or circle >= 0 else math.inf
-    ball.sensor_after, ball.sensor_index = next_sensor(
-        ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene, gx, gy, -1.0, -1
+    after, arc = first_arc(
+        ball, tables.arcs, head.arcs, state.arc_sides, state.disabled, w, k, scene, gx, gy, nx, ny, after
     )
-    plan_zones(ball, state.zones, tables.rails, head.paddles, w, k, scene, gx, gy, 0.0)
+    if arc >= 0:
+        ball.hit_kind, ball.hit_index = ON_ARC, arc
+    off = end_of_wall(ball, tables.faces, scene, gx, gy)
+    if off < after:
+        ball.hit_kind, ball.hit_index, after = OFF_END, ball.contact, off
+    ball.end_after = after
+    met = face >= 0 or circle >= 0 or arc >= 0 or ball.hit_kind == OFF_END
+    ball.hit_after = after if met else math.inf
+
+
+@function
+def plan_rest(state: State, tables: Tables, w: int, k: int) -> None:
+    """Search what does not end the flight, or may move: sensors, zones, parts; and set the ball's next event."""
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    gx, gy = pull(tables.gravity, ball)
+    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(state, tables, w, k, gx, gy, -1.0, -1, -1)
+    plan_zones(ball, state.zones, tables.rails, tables.scenes[scene].paddles, w, k, scene, gx, gy, 0.0)
     plan_parts(state, tables, w, k)
+
+
+@function
+def resolve_next(ball: Record) -> None:
+    """Let the ball's next event be at the instant of its last: to bounce from what it touches, and to be planned."""
+    ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, 0.0, 0.0
+    ball.sensor_after, ball.zone_after, ball.part_hi, ball.part_lo = math.inf, math.inf, math.inf, 0.0
+    schedule(ball)
 
 
 @function

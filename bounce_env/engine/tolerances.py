@@ -18,12 +18,35 @@ WEIGHTLESS = 1e-150
 # Within it the ball is moved to the surface: it is what is lost by writing a position down.
 START_OVERLAP = 1e-12  # (dimensionless, times metres)
 
-# A search that has advanced this often without finding a hit or passing the horizon stops where it is. Bounded-
-# acceleration advancement needs 3 to 10 steps; a ball rolling on a curve (which is contact) would need infinitely many.
-SEARCH_STEPS = 500
+# Bounded-acceleration advancement needs 3 to 10 steps; a search that has taken so many goes on as a polynomial.
+SEARCH_STEPS = 24
 
 # Bounces resolved at one instant before the ball is left to the next event (and so to the event budget).
 BOUNCES_AT_ONE_INSTANT = 32
 
 # Nearer than this share of its way to a stop, a part may or may not have reached it: the stop's instant decides.
 UNSURE = 2.0**-40
+
+# A bracketed root is found in 5 to 10 steps of Newton; where they leave the bracket, halving it needs up to this many.
+BRACKETING_STEPS = 100
+
+# Gravity presses a ball on a surface when its share along the normal is larger than this: less is the rounding of the
+# directions of both.
+PRESSING = 2.0**-40
+
+# On a curved surface that a ball is pressed on there is no closed form for ever smaller bounces, nor for rolling. There
+# the smallest rebound is this share of sqrt(press / bend), the speed at which the surface would let go of it.
+ROLLING = 0.01
+
+# In the hollow of a curve a ball that swings slower than this share of sqrt(press / bend), or than `rest_speed`, rests.
+SWING = 0.1 * ROLLING
+
+# The same for a ball balanced on top of a curve, from which it would roll off after tens of thousands of hops.
+BALANCE = 0.01 * ROLLING
+
+# A ball between several surfaces is taken to have come to rest when it rises no more than so many tolerances of length:
+# the smallest hop on a curve is 16 of them high.
+CORNER = 64.0
+
+# Normals that carry a resting ball may miss the direction of gravity by this much.
+ALIGNED = 1e-9

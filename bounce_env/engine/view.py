@@ -2,11 +2,12 @@
 
 import math
 
-from bounce_env.engine.flight import moved, pull, sped
+from bounce_env.engine.flight import moved, sped
 from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Table, function, kernel
 from bounce_env.engine.layout import OUT, Array, State, Tables
-from bounce_env.engine.search import rail_offset
+from bounce_env.engine.parts import rail_offset
+from bounce_env.engine.search import pull
 
 
 @function
@@ -15,7 +16,7 @@ def ball_now(state: State, tables: Tables, w: int, k: int) -> tuple[float, float
     ball, world = state.balls[w, k], state.worlds[w]
     if ball.status == OUT:
         return ball.x, ball.y, ball.vx, ball.vy
-    gx, gy = pull(tables.gravity, world.scene)
+    gx, gy = pull(tables.gravity, ball)
     t = since(world.time_hi, world.time_lo, ball.hi, ball.lo)
     return (
         moved(ball.x, ball.vx, gx, t),

@@ -23,7 +23,7 @@ from bounce_env.engine.loop import (
     run,
 )
 from bounce_env.engine.pack import direction, pack
-from bounce_env.engine.search import rail_offset
+from bounce_env.engine.parts import rail_offset
 from bounce_env.engine.trig import sin_cos
 from bounce_env.engine.view import ball_now
 from bounce_env.games.episode import (
@@ -263,7 +263,7 @@ def steer(state: State, tables: Tables, rails: Table, w: int, action: float) -> 
         return True
     world = state.worlds[w]
     velocity = action * rails[world.scene, 0].max_speed
-    return command_unwatched(world, state.paddles, rails, state.zones, w, 0, velocity)
+    return command_unwatched(world, state.paddles, rails, state.zones, tables.drags, w, 0, velocity)
 
 
 @function

@@ -1,11 +1,16 @@
-"""What each element looks like: strokes in pixels, at rest and lit. Data only; `painter` draws it."""
+"""What each element looks like: strokes and patches in pixels, at rest and lit. Data only; `painter` draws it."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TypeAlias
 
 from bounce_env.render.projection import Projection
-from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Bumper, Field, Paddle, Scene, Sensor, Wall
+
+Point: TypeAlias = tuple[float, float]
+"""x to the right and y down, pixels."""
 
 Color: TypeAlias = tuple[int, int, int, int]
 """Red, green, blue and opacity, 0 to 255."""
@@ -20,6 +25,8 @@ _PADDLE, _PADDLE_LIT = (56, 218, 206, 255), (206, 255, 248, 255)
 _RAIL = (43, 50, 84, 255)
 _DRAIN, _DRAIN_LIT = (196, 62, 74, 255), (255, 128, 128, 255)
 _SENSOR, _SENSOR_LIT = (74, 148, 120, 255), (150, 255, 200, 255)
+_WIND, _WIND_ARROW = (96, 104, 232, 34), (116, 126, 236, 120)
+_WIND_LIT, _WIND_ARROW_LIT = (120, 140, 255, 90), (190, 200, 255, 220)
 _BALL = (255, 252, 240, 255)
 
 _SMALLEST_RADIUS = 1.5
@@ -27,6 +34,9 @@ _SMALLEST_RADIUS = 1.5
 
 _MOST_RINGS = 64
 """A glow has a ring a pixel, so that none can be told apart, but no more than this."""
+
+_SAGITTA = 0.04
+"""A curve is drawn as chords that miss it by no more pixels than this, less than one can see."""
 
 
 @dataclass(frozen=True)
@@ -36,14 +46,22 @@ class Stroke:
     It replaces what earlier strokes of the same look left beneath it, opacity included.
     """
 
-    start: tuple[float, float]
-    end: tuple[float, float]
+    start: Point
+    end: Point
     radius: float
     color: Color
 
 
-Look: TypeAlias = tuple[Stroke, ...]
-"""Strokes in the order in which they are drawn."""
+@dataclass(frozen=True)
+class Patch:
+    """A filled convex polygon, pixels. It replaces what lies beneath it as a `Stroke` does."""
+
+    corners: tuple[Point, ...]
+    color: Color
+
+
+Look: TypeAlias = tuple[Stroke | Patch, ...]
+"""Strokes and patches in the order in which they are drawn."""
 
 
 def ball_look(scene: Scene, projection: Projection) -> Look:
@@ -71,15 +89,25 @@ def rail_look(paddle: Paddle, projection: Projection) -> Look:
     return (Stroke(start, end, 0.6 * _pen(projection), _RAIL),)
 
 
-def still_look(element: Wall | Bumper | Sensor, scene: Scene, projection: Projection, *, lit: bool) -> Look:
+def still_look(
+    element: Wall | Bumper | Arc | Sensor | Field, scene: Scene, projection: Projection, *, lit: bool
+) -> Look:
     """An element that does not move, where it stands in the picture."""
     match element:
         case Bumper():
             return _bumper(element, _adds_energy(element, scene), projection, lit=lit)
+        case Wall() if element.one_way:
+            return _gate(element, _adds_energy(element, scene), projection, lit=lit)
         case Wall():
-            return _wall(element, _adds_energy(element, scene), projection, lit=lit)
+            path = [_pixel(point, projection) for point in (element.start, element.end)]
+            return _line(path, _pen(projection), _adds_energy(element, scene), lit=lit)
+        case Arc():
+            path = _curve(element.center, element.radius, element.start_angle, element.end_angle, projection)
+            return _line(path, _pen(projection), _adds_energy(element, scene), lit=lit)
         case Sensor():
             return _dashes(element, projection, lit=lit)
+        case Field():
+            return _wind(element, projection, lit=lit)
 
 
 def _bumper(bumper: Bumper, lively: bool, projection: Projection, *, lit: bool) -> Look:
@@ -101,31 +129,88 @@ def _bumper(bumper: Bumper, lively: bool, projection: Projection, *, lit: bool) 
     )
 
 
-def _wall(wall: Wall, lively: bool, projection: Projection, *, lit: bool) -> Look:
+def _line(path: Sequence[Point], pen: float, lively: bool, *, lit: bool) -> Look:
+    """What bounces along a line: a wall, or the chords of an arc."""
+    if not lit:
+        return _along(path, pen, _LIVELY if lively else _PASSIVE)
+    color = _LIVELY_LIT if lively else _PASSIVE_LIT
+    glow = (_along(path, ring.radius, ring.color) for ring in _glow(path[0], path[0], pen, 2 * pen, color, 90))
+    return (*(stroke for ring in glow for stroke in ring), *_along(path, pen, color))
+
+
+def _gate(wall: Wall, lively: bool, projection: Projection, *, lit: bool) -> Look:
+    """A one-way wall: a thinner line, and arrow heads on the side from which the ball may pass, pointing its way."""
     start, end = _pixel(wall.start, projection), _pixel(wall.end, projection)
     pen = _pen(projection)
-    if not lit:
-        return (Stroke(start, end, pen, _LIVELY if lively else _PASSIVE),)
-    color = _LIVELY_LIT if lively else _PASSIVE_LIT
-    return (*_glow(start, end, pen, 2 * pen, color, 90), Stroke(start, end, pen, color))
+    length = math.dist(start, end)
+    ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+    heads = max(1, round(length / (14 * pen)))
+
+    def place(along: float, right: float) -> Point:
+        return start[0] + along * ux - right * uy, start[1] + along * uy + right * ux  # y points down
+
+    color = (_LIVELY_LIT if lively else _PASSIVE_LIT) if lit else (_LIVELY if lively else _PASSIVE)
+    wing = min(2.6 * pen, 0.5 * length)
+    chevrons = [
+        [place(middle - wing, 2.2 * pen + wing), place(middle, 2.2 * pen), place(middle + wing, 2.2 * pen + wing)]
+        for middle in ((i + 0.5) * length / heads for i in range(heads))
+    ]
+    line = _line((start, end), 0.6 * pen, lively, lit=lit)
+    return (*line, *(stroke for chevron in chevrons for stroke in _along(chevron, 0.6 * pen, color)))
 
 
 def _dashes(sensor: Sensor, projection: Projection, *, lit: bool) -> Look:
     """A sensor is no obstacle: a broken line."""
     color = (_DRAIN_LIT if lit else _DRAIN) if sensor.drain else (_SENSOR_LIT if lit else _SENSOR)
-    (x0, y0), (x1, y1) = _pixel(sensor.start, projection), _pixel(sensor.end, projection)
     pen = _pen(projection)
-    count = max(1, round(math.dist((x0, y0), (x1, y1)) / (10 * pen)))
+    if sensor.segment is not None:
+        (x0, y0), (x1, y1) = (_pixel(point, projection) for point in sensor.segment)
+        count = max(1, round(math.dist((x0, y0), (x1, y1)) / (10 * pen)))
+        shares = [((i + 0.25) / count, (i + 0.75) / count) for i in range(count)]
+        ends = [[(x0 + share * (x1 - x0), y0 + share * (y1 - y0)) for share in dash] for dash in shares]
+        return tuple(Stroke(start, end, 0.8 * pen, color) for start, end in ends)
+    assert sensor.circle is not None
+    center, radius = sensor.circle
+    turn = 2 * math.pi
+    count = max(3, round(turn * radius * projection.scale / (10 * pen)))
+    dashes = [
+        _curve(center, radius, turn * (i - 0.25) / count, turn * (i + 0.25) / count, projection) for i in range(count)
+    ]
+    return tuple(stroke for dash in dashes for stroke in _along(dash, 0.8 * pen, color))
 
-    def along(share: float) -> tuple[float, float]:
-        return x0 + share * (x1 - x0), y0 + share * (y1 - y0)
 
-    return tuple(Stroke(along((i + 0.25) / count), along((i + 0.75) / count), 0.8 * pen, color) for i in range(count))
+def _wind(field: Field, projection: Projection, *, lit: bool) -> Look:
+    """A field: a faint patch, and in its middle an arrow that points where it drives the ball."""
+    patch, color = (_WIND_LIT, _WIND_ARROW_LIT) if lit else (_WIND, _WIND_ARROW)
+    corners = tuple(_pixel(point, projection) for point in field.points)
+    x, y = (sum(side) / len(corners) for side in zip(*corners, strict=True))
+    ax, ay = field.acceleration
+    size = math.hypot(ax, ay)
+    if size == 0.0:
+        return (Patch(corners, patch),)
+    ux, uy = ax / size, -ay / size
+    reach = 0.3 * min(math.dist((x, y), corner) for corner in corners)
+    tail, tip = (x - reach * ux, y - reach * uy), (x + reach * ux, y + reach * uy)
+    wings = [(x + 0.4 * reach * (ux + side * uy), y + 0.4 * reach * (uy - side * ux)) for side in (-1, 1)]
+    pen = 0.6 * _pen(projection)
+    shaft, head = _along((tail, tip), pen, color), _along((wings[0], tip, wings[1]), pen, color)
+    return (Patch(corners, patch), *shaft, *head)
 
 
-def _glow(
-    start: tuple[float, float], end: tuple[float, float], radius: float, reach: float, color: Color, peak: int
-) -> Look:
+def _along(path: Sequence[Point], radius: float, color: Color) -> tuple[Stroke, ...]:
+    return tuple(Stroke(start, end, radius, color) for start, end in pairwise(path))
+
+
+def _curve(center: Point, radius: float, start: float, end: float, projection: Projection) -> list[Point]:
+    """Points on a circle from one angle to another, so near to each other that their chords look round."""
+    sagitta = min(_SAGITTA / (radius * projection.scale), 0.5)
+    chords = max(1, math.ceil((end - start) / (2 * math.acos(1 - sagitta))))
+    angles = [start + (end - start) * i / chords for i in range(chords + 1)]
+    x, y = center
+    return [_pixel((x + radius * math.cos(angle), y + radius * math.sin(angle)), projection) for angle in angles]
+
+
+def _glow(start: Point, end: Point, radius: float, reach: float, color: Color, peak: int) -> tuple[Stroke, ...]:
     """Ever smaller and more opaque strokes, from `radius + reach` inwards to `radius`, up to the opacity `peak`."""
     rings = min(max(4, math.ceil(reach)), _MOST_RINGS)
     return tuple(
@@ -134,7 +219,7 @@ def _glow(
     )
 
 
-def _adds_energy(element: Wall | Bumper, scene: Scene) -> bool:
+def _adds_energy(element: Wall | Bumper | Arc, scene: Scene) -> bool:
     return element.kick > 0 or element.b * scene.ball.b > 1
 
 
@@ -143,6 +228,6 @@ def _pen(projection: Projection) -> float:
     return max(0.75, 0.004 * min(projection.width, projection.height))
 
 
-def _pixel(point: tuple[float, float], projection: Projection) -> tuple[float, float]:
+def _pixel(point: tuple[float, float], projection: Projection) -> Point:
     x, y = projection.to_pixels(point)
     return float(x), float(y)

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from bounce_env.render.looks import FIELD_BOTTOM, FIELD_TOP, TEXT, TEXT_SHADOW, Look, Stroke
+from bounce_env.render.looks import FIELD_BOTTOM, FIELD_TOP, TEXT, TEXT_SHADOW, Look, Patch, Stroke
 
 Pixels = npt.NDArray[np.uint8]
 
@@ -66,7 +66,7 @@ class Sprite:
             return  # pygame takes places modulo 2^32, and would draw what lies very far outside
         image = self._images.get((right, down))
         if image is None:
-            moved = [_moved(stroke, right / FINENESS, down / FINENESS) for stroke in self._look]
+            moved = [_moved(shape, right / FINENESS, down / FINENESS) for shape in self._look]
             image = self._images[right, down] = _rasterised(moved, self._area)
         _stamp(target, image, (left, top))
 
@@ -104,22 +104,30 @@ def _stamp(target: pygame.Surface, image: pygame.Surface, place: tuple[int, int]
     target.blit(image, place, special_flags=pygame.BLEND_PREMULTIPLIED)
 
 
-def _area_of(look: Sequence[Stroke]) -> pygame.Rect:
+def _area_of(look: Look) -> pygame.Rect:
     """The whole pixels that a look touches."""
-    xs = [(point[0], stroke.radius) for stroke in look for point in (stroke.start, stroke.end)]
-    ys = [(point[1], stroke.radius) for stroke in look for point in (stroke.start, stroke.end)]
-    left, right = (math.floor(min(x - r for x, r in xs)), math.ceil(max(x + r for x, r in xs)))
-    top, bottom = (math.floor(min(y - r for y, r in ys)), math.ceil(max(y + r for y, r in ys)))
+    reaches = [reach for shape in look for reach in _reaches(shape)]
+    left, right = (math.floor(min(x - r for x, _, r in reaches)), math.ceil(max(x + r for x, _, r in reaches)))
+    top, bottom = (math.floor(min(y - r for _, y, r in reaches)), math.ceil(max(y + r for _, y, r in reaches)))
     return pygame.Rect(left, top, right - left, bottom - top)
 
 
-def _moved(stroke: Stroke, right: float, down: float) -> Stroke:
-    (x0, y0), (x1, y1) = stroke.start, stroke.end
-    return Stroke((x0 + right, y0 + down), (x1 + right, y1 + down), stroke.radius, stroke.color)
+def _reaches(shape: Stroke | Patch) -> list[tuple[float, float, float]]:
+    """Points x, y of a shape, and how far around each it reaches."""
+    if isinstance(shape, Patch):
+        return [(x, y, 0.0) for x, y in shape.corners]
+    return [(x, y, shape.radius) for x, y in (shape.start, shape.end)]
 
 
-def _rasterised(strokes: Sequence[Stroke], area: pygame.Rect) -> pygame.Surface:
-    """What `strokes` leave on an area of the picture, with colours multiplied by their opacity.
+def _moved(shape: Stroke | Patch, right: float, down: float) -> Stroke | Patch:
+    if isinstance(shape, Patch):
+        return Patch(tuple((x + right, y + down) for x, y in shape.corners), shape.color)
+    (x0, y0), (x1, y1) = shape.start, shape.end
+    return Stroke((x0 + right, y0 + down), (x1 + right, y1 + down), shape.radius, shape.color)
+
+
+def _rasterised(look: Sequence[Stroke | Patch], area: pygame.Rect) -> pygame.Surface:
+    """What a look leaves on an area of the picture, with colours multiplied by their opacity.
 
     Only so is the mean of an opaque and a clear pixel right: a clear one has no colour to give.
     """
@@ -127,22 +135,26 @@ def _rasterised(strokes: Sequence[Stroke], area: pygame.Rect) -> pygame.Surface:
     for top in range(area.top, area.bottom, _BAND):
         rows = min(_BAND, area.bottom - top)
         fine = pygame.Surface((area.width * FINENESS, rows * FINENESS), pygame.SRCALPHA)
-        for stroke in strokes:
-            _draw_fine(fine, _moved(stroke, -area.left, -top))
+        for shape in look:
+            _draw_fine(fine, _moved(shape, -area.left, -top))
         _stamp(image, pygame.transform.smoothscale(fine.premul_alpha(), (area.width, rows)), (0, top - area.top))
     return image
 
 
-def _draw_fine(fine: pygame.Surface, stroke: Stroke) -> None:
-    (x0, y0), (x1, y1) = [(FINENESS * x, FINENESS * y) for x, y in (stroke.start, stroke.end)]
-    radius = FINENESS * stroke.radius
+def _draw_fine(fine: pygame.Surface, shape: Stroke | Patch) -> None:
+    if isinstance(shape, Patch):
+        corners = [(math.floor(FINENESS * x), math.floor(FINENESS * y)) for x, y in shape.corners]
+        pygame.draw.polygon(fine, shape.color, corners)
+        return
+    (x0, y0), (x1, y1) = [(FINENESS * x, FINENESS * y) for x, y in (shape.start, shape.end)]
+    radius = FINENESS * shape.radius
     for x, y in {(x0, y0), (x1, y1)}:
-        pygame.draw.circle(fine, stroke.color, (round(x), round(y)), round(radius))
+        pygame.draw.circle(fine, shape.color, (round(x), round(y)), round(radius))
     length = math.hypot(x1 - x0, y1 - y0)
     if length > 0:
         nx, ny = (y0 - y1) / length, (x1 - x0) / length
         # A polygon covers the pixels of its outline, too: half a pixel less on each side keeps it as wide as the discs.
         reach = radius - 0.5
-        corners = ((x0, y0, reach), (x1, y1, reach), (x1, y1, -reach), (x0, y0, -reach))
-        outline = [(math.floor(x + side * nx), math.floor(y + side * ny)) for x, y, side in corners]
-        pygame.draw.polygon(fine, stroke.color, outline)
+        sides = ((x0, y0, reach), (x1, y1, reach), (x1, y1, -reach), (x0, y0, -reach))
+        outline = [(math.floor(x + side * nx), math.floor(y + side * ny)) for x, y, side in sides]
+        pygame.draw.polygon(fine, shape.color, outline)

@@ -9,7 +9,7 @@ from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.render.looks import ball_look, paddle_look, rail_look, still_look
 from bounce_env.render.picture import Picture
 from bounce_env.render.projection import Projection
-from bounce_env.scene import Paddle, Scene, Sensor
+from bounce_env.scene import Field, Paddle, Scene, Sensor
 
 
 class Renderer:
@@ -30,7 +30,8 @@ class Renderer:
         paddles = {i: e for i, e in enumerate(scene.elements) if isinstance(e, Paddle)}
         still = {i: e for i, e in enumerate(scene.elements) if not isinstance(e, Paddle)}
         rails = [rail_look(paddle, self.projection) for paddle in paddles.values()]
-        at_rest = [still_look(e, scene, self.projection, lit=False) for e in still.values()]
+        beneath = sorted(still.values(), key=lambda e: not isinstance(e, Field))
+        at_rest = [still_look(e, scene, self.projection, lit=False) for e in beneath]
         self._painter = painter
         self._elements = len(scene.elements)
         self._background = painter.still_picture(*size, [*rails, *at_rest])
@@ -71,9 +72,9 @@ class Renderer:
 def _label_place(scene: Scene, projection: Projection) -> tuple[int, int, int, int]:
     """Left, top, room to the right and text size, in pixels: the top left corner inside of what bounces the ball.
 
-    Sensors do not count: a drain may be wider than the field.
+    Sensors do not count, for a drain may be wider than the field; neither do regions of acceleration.
     """
-    boxes = [e.bounds for e in scene.elements if not isinstance(e, Sensor)] or [scene.bounds]
+    boxes = [e.bounds for e in scene.elements if not isinstance(e, Sensor | Field)] or [scene.bounds]
     x_min, y_min, x_max, y_max = np.transpose(boxes)
     corners = [(x_min.min(), y_max.max()), (x_max.max(), y_min.min())]
     (left, top), (right, bottom) = projection.to_pixels(corners).tolist()

@@ -1,13 +1,15 @@
 """Scenes: what a table is made of, and how it is read from a file and written to one."""
 
 from bounce_env.scene.load import SceneError, builtin_scenes, dump_scene, load_scene, scene_from_dict
-from bounce_env.scene.spec import Ball, Box, Bumper, Element, Paddle, Scene, Sensor, Wall
+from bounce_env.scene.spec import Arc, Ball, Box, Bumper, Element, Field, Paddle, Scene, Sensor, Wall
 
 __all__ = [
+    "Arc",
     "Ball",
     "Box",
     "Bumper",
     "Element",
+    "Field",
     "Paddle",
     "Scene",
     "SceneError",

@@ -1,13 +1,16 @@
 """What only a whole scene can show: a name used twice, sizes out of proportion, speed without limit."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 from pydantic import ValidationError
 from pydantic_core import InitErrorDetails
 
-from bounce_env.scene.elements import Ball, Bumper, Element, Paddle, Sensor, Wall, union
+from bounce_env.scene.base import union
+from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Paddle, Wall
 from bounce_env.scene.fields import not_allowed, required
+from bounce_env.scene.regions import Field, Sensor, flat_corner
 
 SMALLEST_RADIUS = 1e-6
 """Smallest radius as a share of the scene's longer side. The time at which a disc is hit comes from squares
@@ -15,8 +18,13 @@ of distances; at 1e-8 of the distance the square of the radius drowns in their r
 other than a point, at 1e-6 about four of its digits are left."""
 
 SMALLEST_LENGTH = 1e-9
-"""Smallest length of a wall, rail or paddle core as a share of the scene's longer side: its direction is then
-known to about seven digits wherever in the scene it stands."""
+"""Smallest length of a wall, arc, rail or paddle core, and smallest height of a field's corner above the line
+through its neighbours, as a share of the scene's longer side: a direction is then known to about seven digits
+wherever in the scene it stands."""
+
+LARGEST_ARC = 1e3
+"""Largest radius of an arc as a multiple of the scene's longer side: the ball's distance from the arc is a
+difference of two lengths of about the radius and has their round-off."""
 
 SMALLEST_AT_OFFSET = 1e-12
 """Smallest length of any kind as a share of the largest coordinate: some thousand times what float64 can
@@ -54,28 +62,86 @@ def _names(elements: Mapping[int, Element]) -> Iterator[InitErrorDetails]:
         first.setdefault(element.name, _label(index, element))
 
 
-def _sizes(ball: Ball | None, elements: Mapping[int, Element]) -> Iterator[InitErrorDetails]:
-    x_min, y_min, x_max, y_max = union(element.bounds for element in elements.values())
+@dataclass(frozen=True)
+class _Limits:
+    """What a scene of some size allows its parts to measure, in metres; `why` says so."""
+
+    side: float
+    radius: float
+    length: float
+    why: str
+
+
+def _limits(elements: Iterable[Element]) -> _Limits:
+    x_min, y_min, x_max, y_max = union(element.bounds for element in elements)
     side = max(x_max - x_min, y_max - y_min)
     largest = max(abs(x_min), abs(y_min), abs(x_max), abs(y_max))
-    radius = max(SMALLEST_RADIUS * side, SMALLEST_AT_OFFSET * largest)
-    length = max(SMALLEST_LENGTH * side, SMALLEST_AT_OFFSET * largest)
-    why = f"in a scene whose longer side is {side:.3g} m and whose largest coordinate is {largest:.3g} m"
+    return _Limits(
+        side=side,
+        radius=max(SMALLEST_RADIUS * side, SMALLEST_AT_OFFSET * largest),
+        length=max(SMALLEST_LENGTH * side, SMALLEST_AT_OFFSET * largest),
+        why=f"in a scene whose longer side is {side:.3g} m and whose largest coordinate is {largest:.3g} m",
+    )
 
-    if ball is not None and 0.0 < ball.radius < radius:
-        yield _not_allowed(f"0 or at least {radius:.3g} m, {why}", ball.radius, "ball", "radius")
+
+def _sizes(ball: Ball | None, elements: Mapping[int, Element]) -> Iterator[InitErrorDetails]:
+    limits = _limits(elements.values())
+    ball_radius = 0.0 if ball is None else ball.radius
+    if 0.0 < ball_radius < limits.radius:
+        yield _not_allowed(f"0 or at least {limits.radius:.3g} m, {limits.why}", ball_radius, "ball", "radius")
     for index, element in elements.items():
-        at = ("elements", index)
-        if isinstance(element, Bumper | Paddle) and element.radius < radius:
-            yield _not_allowed(f"at least {radius:.3g} m, {why}", element.radius, *at, "radius")
-        if isinstance(element, Wall | Sensor) and math.dist(element.start, element.end) < length:
-            words = f"at least {length:.3g} m away from start = {list(element.start)}, {why}"
-            yield _not_allowed(words, list(element.end), *at, "end")
-        if isinstance(element, Paddle) and math.dist(element.rail_start, element.rail_end) < length:
-            words = f"at least {length:.3g} m away from rail_start = {list(element.rail_start)}, {why}"
-            yield _not_allowed(words, list(element.rail_end), *at, "rail_end")
-        if isinstance(element, Paddle) and 0.0 < element.half_width < length:
-            yield _not_allowed(f"0 or at least {length:.3g} m, {why}", element.half_width, *at, "half_width")
+        for field, words in _size_problems(element, ball_radius, limits):
+            value = _as_lists(getattr(element, field))
+            yield _not_allowed(f"{words}, {limits.why}", value, "elements", index, field)
+
+
+def _as_lists(value: object) -> object:
+    """A point or points as files spell them."""
+    return [*map(_as_lists, value)] if isinstance(value, tuple) else value
+
+
+def _size_problems(element: Element, ball_radius: float, limits: _Limits) -> Iterator[tuple[str, str]]:
+    """The fields of an element that are out of proportion, and what they must be."""
+    match element:
+        case Wall():
+            yield from _short(element, "start", "end", limits)
+        case Bumper():
+            yield from _thin(element.radius, limits)
+        case Arc():
+            yield from _thin(element.radius, limits)
+            yield from _misshapen(element, ball_radius, limits)
+        case Paddle():
+            yield from _thin(element.radius, limits)
+            yield from _short(element, "rail_start", "rail_end", limits)
+            if 0.0 < element.half_width < limits.length:
+                yield "half_width", f"0 or at least {limits.length:.3g} m"
+        case Sensor():
+            yield from _short(element, "start", "end", limits)
+            yield from _thin(element.radius, limits)
+        case Field():
+            if flat := flat_corner(element.points, limits.length):
+                yield "points", flat
+
+
+def _thin(radius: float | None, limits: _Limits) -> Iterator[tuple[str, str]]:
+    if radius is not None and radius < limits.radius:
+        yield "radius", f"at least {limits.radius:.3g} m"
+
+
+def _short(element: Wall | Paddle | Sensor, first: str, last: str, limits: _Limits) -> Iterator[tuple[str, str]]:
+    start, end = getattr(element, first), getattr(element, last)
+    if start is not None and math.dist(start, end) < limits.length:
+        yield last, f"at least {limits.length:.3g} m away from {first} = {list(start)}"
+
+
+def _misshapen(arc: Arc, ball_radius: float, limits: _Limits) -> Iterator[tuple[str, str]]:
+    if arc.radius > LARGEST_ARC * limits.side:
+        yield "radius", f"at most {LARGEST_ARC * limits.side:.3g} m"
+    # inside of the arc the ball's centre keeps to a circle of the difference
+    if ball_radius > 0.0 and abs(arc.radius - ball_radius) < limits.radius:
+        yield "radius", f"at least {limits.radius:.3g} m more or less than ball.radius = {ball_radius}"
+    if arc.radius * (arc.end_angle - arc.start_angle) < limits.length:
+        yield "end_angle", f"such that the arc is at least {limits.length:.3g} m long"
 
 
 def _speeds(ball: Ball | None, elements: Mapping[int, Element], max_speed: float | None) -> Iterator[InitErrorDetails]:
@@ -93,7 +159,7 @@ def _speeds(ball: Ball | None, elements: Mapping[int, Element], max_speed: float
 
 def _gain(ball: Ball | None, index: int, element: Element) -> str | None:
     """What lets a bounce off the element add energy, in words, or None."""
-    if isinstance(element, Sensor):
+    if isinstance(element, Sensor | Field):
         return None
     if element.kick > 0.0:
         return f"{_label(index, element)} has kick = {element.kick}"

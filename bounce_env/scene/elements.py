@@ -1,4 +1,4 @@
-"""What a scene is made of: frozen, validated specs in SI units (metres, seconds; y points up).
+"""What a scene is made of: frozen, validated specs in SI units (metres, seconds, radians; y points up).
 
 Every spec checks its own fields when it is made; what is wrong raises `pydantic.ValidationError` (a
 ValueError) that names class, field, value and what is allowed. Numbers may be Python's or NumPy's, points a
@@ -6,26 +6,20 @@ tuple, list or array of two; they are kept as float and tuple[float, float]. Tex
 
 The law of a bounce is the tutorial's (chapter "Bounce", section "Real bounce and friction"): of the velocity
 relative to the surface, the part along the normal is reversed and multiplied by ball.b * element.b, the part
-along the surface is multiplied by ball.f * element.f.
+along the surface is multiplied by ball.f * element.f. A kick is then added along the normal.
 """
 
 import math
-from collections.abc import Iterable
 from dataclasses import KW_ONLY
-from typing import Any, Self, TypeAlias
+from typing import TypeAlias
 
-from pydantic import (
-    ConfigDict,
-    ModelWrapValidatorHandler,
-    ValidationError,
-    ValidationInfo,
-    field_validator,
-    model_validator,
-)
+from pydantic import ValidationInfo, field_validator
 from pydantic.dataclasses import dataclass
 
+from bounce_env.scene.base import CONFIG, Box, Spec, away_from, box_of
 from bounce_env.scene.fields import (
     SMALLEST,
+    Angle,
     Flag,
     Name,
     Positive,
@@ -33,27 +27,16 @@ from bounce_env.scene.fields import (
     ZeroOrMore,
     ZeroOrPositive,
     ZeroToOne,
-    explain,
     not_allowed,
 )
+from bounce_env.scene.regions import Field, Sensor
 
-Box: TypeAlias = tuple[float, float, float, float]
-"""x_min, y_min, x_max, y_max in metres."""
+CLOSED = 1e-12
+"""An arc is a closed circle when what it lacks of 2 pi is no more than this [rad]: round-off of the angles."""
 
-CONFIG = ConfigDict(extra="forbid")
-
-
-@dataclass(frozen=True, config=CONFIG)
-class Spec:
-    """Base of all specs: its errors say of a missing and an unknown field, too, what is allowed."""
-
-    @model_validator(mode="wrap")
-    @classmethod
-    def _explain(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        try:
-            return handler(value)
-        except ValidationError as error:
-            raise explain(error, cls) from None
+SMALLEST_SPAN = 1e-6
+"""Smallest angle of an arc, and smallest gap of one that is not closed [rad]: about ten digits of it are known.
+A narrower gap is a 2 pi written with too few digits."""
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -76,30 +59,8 @@ class _Surface(Spec):
     f: ZeroToOne = 1.0
     kick: ZeroOrMore = 0.0
     kick_threshold: ZeroOrMore = 0.0
+    cooldown: ZeroOrMore = 0.0
     name: Name = ""
-
-
-def union(boxes: Iterable[Box]) -> Box:
-    """The box around all boxes, zeros if there are none."""
-    sides = list(zip(*boxes, strict=True)) or [(0.0,)] * 4
-    return min(sides[0]), min(sides[1]), max(sides[2]), max(sides[3])
-
-
-def _away_from(start: str) -> Any:
-    """Validator of a segment's last field: its two ends are two points."""
-
-    def check(end: tuple[float, float], info: ValidationInfo) -> tuple[float, float]:
-        other = info.data.get(start)  # absent if it was refused itself
-        if other is not None and math.dist(other, end) < SMALLEST:
-            raise not_allowed(f"at least {SMALLEST:g} m away from {start} = {list(other)}")
-        return end
-
-    return check
-
-
-def box_of(points: tuple[tuple[float, float], ...], margin: float = 0.0) -> Box:
-    xs, ys = zip(*points, strict=True)
-    return min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -108,13 +69,17 @@ class Wall(_Surface):
 
     start, end: its ends (x, y) in metres, two different points. b: bounciness, 0 or more. f: friction, 0 (all
     lost) to 1 (none). kick: speed in m/s added along the normal when the approach is faster than
-    kick_threshold (m/s). name: unique in the scene, or "" for none.
+    kick_threshold (m/s). cooldown: seconds after a kick in which the wall gives no other. one_way: True
+    bounces a ball that comes from the left of start -> end only; from the right it passes freely, and the ends
+    never bounce. name: unique in the scene, or "" for none.
     """
 
     start: Vector
     end: Vector
+    _: KW_ONLY
+    one_way: Flag = False
 
-    _check_end = field_validator("end")(_away_from("start"))
+    _check_end = field_validator("end")(away_from("start"))
 
     @property
     def bounds(self) -> Box:
@@ -126,7 +91,7 @@ class Wall(_Surface):
 class Bumper(_Surface):
     """A circle that bounces the ball outside of it.
 
-    center: (x, y) in metres. radius: metres, > 0. b, f, kick, kick_threshold, name: as for a `Wall`.
+    center: (x, y) in metres. radius: metres, > 0. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
     """
 
     center: Vector
@@ -139,13 +104,72 @@ class Bumper(_Surface):
 
 
 @dataclass(frozen=True, config=CONFIG)
+class Arc(_Surface):
+    """A part of a circle's line that bounces the ball from inside, from outside and at its ends.
+
+    center: (x, y) in metres. radius: metres, > 0. start_angle, end_angle: radians from the x axis; the arc goes
+    counter-clockwise from start to end, by more than 0 and at most 2 pi; by 2 pi (to 1e-12) it is a closed
+    circle and has no ends. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
+    """
+
+    center: Vector
+    radius: Positive
+    start_angle: Angle
+    end_angle: Angle
+
+    @field_validator("end_angle")
+    @classmethod
+    def _check_span(cls, end: float, info: ValidationInfo) -> float:
+        if "start_angle" not in info.data:  # it was refused itself
+            return end
+        start = info.data["start_angle"]
+        span, turn = end - start, 2 * math.pi
+        if not SMALLEST_SPAN <= span <= turn + CLOSED:
+            raise not_allowed(
+                f"more than start_angle = {start}, by {SMALLEST_SPAN:g} to 2 pi radians (to {start + turn!r})"
+            )
+        if turn - SMALLEST_SPAN < span < turn - CLOSED:
+            raise not_allowed(
+                f"start_angle + 2 pi = {start + turn!r} for a closed circle, or less by {SMALLEST_SPAN:g} or more"
+            )
+        radius = info.data.get("radius", math.inf)
+        if radius * span < SMALLEST:
+            raise not_allowed(f"such that the arc is at least {SMALLEST:g} m long")
+        return end
+
+    @property
+    def closed(self) -> bool:
+        """Whether it is a whole circle, without ends."""
+        return self.end_angle - self.start_angle >= 2 * math.pi - CLOSED
+
+    @property
+    def bounds(self) -> Box:
+        """x_min, y_min, x_max, y_max in metres.
+
+        Of the ends and of the directions of the axes that the arc passes, so that it holds no more than the arc.
+        Sine and cosine are libm's and may differ in the last bit from machine to machine; they are rounded to
+        2^-40, and of the physics only the power of two above the scene's largest coordinate depends on them.
+        """
+        first = math.ceil(self.start_angle / (math.pi / 2))
+        last = math.floor(self.end_angle / (math.pi / 2))
+        ways = [((1, 0), (0, 1), (-1, 0), (0, -1))[quarter % 4] for quarter in range(first, last + 1)]
+        ends = [(_rounded(math.cos(angle)), _rounded(math.sin(angle))) for angle in (self.start_angle, self.end_angle)]
+        x, y = self.center
+        return box_of([(x + self.radius * dx, y + self.radius * dy) for dx, dy in (*ways, *ends)])
+
+
+def _rounded(share: float) -> float:
+    return math.ldexp(round(math.ldexp(share, 40)), -40)
+
+
+@dataclass(frozen=True, config=CONFIG)
 class Paddle(_Surface):
     """A capsule that moves on a straight rail between two stops.
 
     rail_start, rail_end: where its centre stops, (x, y) in metres, two different points; it starts between
     them. half_width: how far its core, a segment parallel to the rail, reaches to each side of the centre,
     metres, 0 or more. radius: thickness around the core, metres, > 0; so it is 2 (half_width + radius) long.
-    max_speed: of its centre along the rail, m/s, > 0. b, f, kick, kick_threshold, name: as for a `Wall`.
+    max_speed: of its centre along the rail, m/s, > 0. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
     """
 
     rail_start: Vector
@@ -155,7 +179,7 @@ class Paddle(_Surface):
     radius: Positive
     max_speed: Positive
 
-    _check_rail_end = field_validator("rail_end")(_away_from("rail_start"))
+    _check_rail_end = field_validator("rail_end")(away_from("rail_start"))
 
     @property
     def bounds(self) -> Box:
@@ -166,26 +190,4 @@ class Paddle(_Surface):
         return box_of(((x0 - dx, y0 - dy), (x1 + dx, y1 + dy)), self.radius)
 
 
-@dataclass(frozen=True, config=CONFIG)
-class Sensor(Spec):
-    """A segment that reports when the ball's centre crosses it, and never bounces.
-
-    start, end: its ends (x, y) in metres, two different points. drain: True takes the ball out of play there.
-    name: unique in the scene, or "" for none.
-    """
-
-    start: Vector
-    end: Vector
-    _: KW_ONLY
-    drain: Flag = False
-    name: Name = ""
-
-    _check_end = field_validator("end")(_away_from("start"))
-
-    @property
-    def bounds(self) -> Box:
-        """x_min, y_min, x_max, y_max in metres."""
-        return box_of((self.start, self.end))
-
-
-Element: TypeAlias = Wall | Bumper | Paddle | Sensor
+Element: TypeAlias = Wall | Bumper | Arc | Paddle | Sensor | Field

@@ -18,6 +18,9 @@ LARGEST = 1e9
 SMALLEST = 1e-9
 """No positive length or speed of a scene is smaller: its square stays far from underflow."""
 
+LARGEST_ANGLE = 100.0
+"""No angle of a scene is larger [rad]: its 16 digits leave 14 behind the point, for sine and cosine."""
+
 
 @dataclass(frozen=True)
 class Allowed:
@@ -102,8 +105,12 @@ def _zero_or_positive(value: object) -> float:
     return number if number == 0.0 else _positive(number)
 
 
-def _zero(value: object) -> float:
-    return _number(value, 0.0, 0.0)
+def _share(value: object) -> float:
+    return _number(value, SMALLEST, 1.0)
+
+
+def _angle(value: object) -> float:
+    return _number(value, -LARGEST_ANGLE, LARGEST_ANGLE)
 
 
 def _positive_or_none(value: object) -> float | None:
@@ -115,6 +122,19 @@ def _vector(value: object) -> tuple[float, float]:
         raise TypeError
     x, y = value
     return _number(x, -LARGEST, LARGEST), _number(y, -LARGEST, LARGEST)
+
+
+def _vector_or_none(value: object) -> tuple[float, float] | None:
+    return None if value is None else _vector(value)
+
+
+def _points(value: object) -> tuple[tuple[float, float], ...]:
+    if not isinstance(value, tuple | list | np.ndarray):
+        raise TypeError
+    points = tuple(_vector(point) for point in value)
+    if len(points) < 3:
+        raise ValueError
+    return points
 
 
 def _flag(value: object) -> bool:
@@ -140,14 +160,21 @@ def instance_of(spec: type | UnionType) -> Callable[[object], object]:
     return convert
 
 
-Vector = Annotated[tuple[float, float], Allowed(f"two numbers [x, y], each from {-LARGEST:g} to {LARGEST:g}", _vector)]
+POINT_WORDS = f"two numbers [x, y], each from {-LARGEST:g} to {LARGEST:g}"
+POSITIVE_WORDS = f"a number > 0 (from {SMALLEST:g} to {LARGEST:g})"
+
+Vector = Annotated[tuple[float, float], Allowed(POINT_WORDS, _vector)]
+VectorOrNone = Annotated[tuple[float, float] | None, Allowed(POINT_WORDS, _vector_or_none)]
+Points = Annotated[
+    tuple[tuple[float, float], ...],
+    Allowed(f"at least 3 points [x, y], each number from {-LARGEST:g} to {LARGEST:g}", _points),
+]
 ZeroOrMore = Annotated[float, Allowed(f"a number >= 0 (at most {LARGEST:g})", _zero_or_more)]
 ZeroToOne = Annotated[float, Allowed("a number >= 0 and <= 1", _zero_to_one)]
-Positive = Annotated[float, Allowed(f"a number > 0 (from {SMALLEST:g} to {LARGEST:g})", _positive)]
+Share = Annotated[float, Allowed(f"a number > 0 and <= 1 (at least {SMALLEST:g})", _share)]
+Positive = Annotated[float, Allowed(POSITIVE_WORDS, _positive)]
 ZeroOrPositive = Annotated[float, Allowed(f"0 or a number from {SMALLEST:g} to {LARGEST:g}", _zero_or_positive)]
-PositiveOrNone = Annotated[float | None, Allowed(f"a number > 0 (from {SMALLEST:g} to {LARGEST:g})", _positive_or_none)]
-RestSpeed = Annotated[
-    float, Allowed("0: a rest speed > 0 is not supported in this release, which has no contact", _zero)
-]
+PositiveOrNone = Annotated[float | None, Allowed(POSITIVE_WORDS, _positive_or_none)]
+Angle = Annotated[float, Allowed(f"a number of radians, from {-LARGEST_ANGLE:g} to {LARGEST_ANGLE:g}", _angle)]
 Flag = Annotated[bool, Allowed("true or false", _flag)]
 Name = Annotated[str, Allowed("printable text", _name)]

@@ -196,5 +196,7 @@ def _toml(value: object) -> str:
             return str(value).lower()
         case str():  # printable, as `Name` demands: only these two need an escape
             return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+        case tuple():
+            return f"[{', '.join(map(_toml, value))}]"
         case _:
-            return repr(list(value) if isinstance(value, tuple) else value)
+            return repr(value)

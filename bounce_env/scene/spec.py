@@ -5,19 +5,29 @@ from typing import Annotated, Self
 from pydantic import BeforeValidator, model_validator
 from pydantic.dataclasses import dataclass
 
+from bounce_env.scene.base import CONFIG, Box, Spec, union
 from bounce_env.scene.checks import check_scene
-from bounce_env.scene.elements import CONFIG, Ball, Box, Bumper, Element, Paddle, Sensor, Spec, Wall, union
-from bounce_env.scene.fields import Allowed, PositiveOrNone, RestSpeed, Vector, instance_of, not_allowed
+from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Paddle, Wall
+from bounce_env.scene.fields import (
+    Allowed,
+    PositiveOrNone,
+    Share,
+    Vector,
+    ZeroOrPositive,
+    instance_of,
+    not_allowed,
+)
+from bounce_env.scene.regions import Field, Sensor
 
-__all__ = ["Ball", "Box", "Bumper", "Element", "Paddle", "Scene", "Sensor", "Wall"]
+__all__ = ["Arc", "Ball", "Box", "Bumper", "Element", "Field", "Paddle", "Scene", "Sensor", "Wall"]
 
 _Ball = Annotated[Ball, Allowed("a Ball", instance_of(Ball))]
-_Element = Annotated[Element, Allowed("a Wall, Bumper, Paddle or Sensor", instance_of(Element))]
+_Element = Annotated[Element, Allowed("a Wall, Bumper, Arc, Paddle, Sensor or Field", instance_of(Element))]
 
 
 def _tuple(value: object) -> tuple[object, ...]:
     if not isinstance(value, tuple | list):  # pydantic alone would take a set, which has no order
-        raise not_allowed("a tuple or list of Wall, Bumper, Paddle and Sensor")
+        raise not_allowed("a tuple or list of Wall, Bumper, Arc, Paddle, Sensor and Field")
     return tuple(value)
 
 
@@ -25,9 +35,12 @@ def _tuple(value: object) -> tuple[object, ...]:
 class Scene(Spec):
     """A table: gravity, the ball and the elements.
 
-    gravity: acceleration (x, y) in m/s^2. ball: what every ball in play is like. rest_speed: m/s, only 0 in
-    this release. max_speed: no bounce leaves the ball faster than this, m/s, > 0; None for no limit. It must
-    be given if a bounce can add energy (a kick, or ball.b * element.b > 1), and exceed every paddle's.
+    gravity: acceleration (x, y) in m/s^2. ball: what every ball in play is like. rest_speed: m/s, 0 or more;
+    where gravity presses the ball on a surface, an approach slower than it is absorbed and the ball slides on
+    without friction; at 0 friction stops it. max_speed: no bounce leaves the ball faster than this, m/s, > 0;
+    None for no limit. It must be given if a bounce can add energy (a kick, or ball.b * element.b > 1), and
+    exceed every paddle's. drag: > 0 and at most 1; every ball's velocity is multiplied by it once at each
+    instant at which a command is given.
     elements: their order counts, for it breaks the tie of bounces that are alike, and an element's index is
     its number in the ledger.
 
@@ -37,8 +50,9 @@ class Scene(Spec):
 
     gravity: Vector = (0.0, -9.81)
     ball: _Ball = Ball()
-    rest_speed: RestSpeed = 0.0
+    rest_speed: ZeroOrPositive = 0.0
     max_speed: PositiveOrNone = None
+    drag: Share = 1.0
     elements: Annotated[tuple[_Element, ...], BeforeValidator(_tuple)] = ()
 
     @model_validator(mode="after")

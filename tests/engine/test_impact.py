@@ -9,13 +9,11 @@ from conftest import soak_count
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from bounce_env.engine.impact import (
-    capsule_time,
-    circle_time,
-    face_time,
-    falling_time,
-    straight_circle_time,
-)
+from bounce_env.engine import impact
+from bounce_env.engine.jit import from_python
+
+capsule_time, circle_time, face_time = map(from_python, (impact.capsule_time, impact.circle_time, impact.face_time))
+falling_time, straight_circle_time = map(from_python, (impact.falling_time, impact.straight_circle_time))
 
 SLACK = 16.0 * 2.0**-52
 coordinate = st.floats(-5.0, 5.0)

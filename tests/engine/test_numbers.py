@@ -8,9 +8,13 @@ from conftest import soak_count
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bounce_env.engine.instant import before, later, since
-from bounce_env.engine.trig import sin_cos
-from bounce_env.games.streams import EPISODES, LAUNCHES, bits, uniform
+from bounce_env.engine import instant, trig
+from bounce_env.engine.jit import from_python
+from bounce_env.games import streams
+from bounce_env.games.streams import EPISODES, LAUNCHES
+
+before, later, since = map(from_python, (instant.before, instant.later, instant.since))
+sin_cos, bits, uniform = map(from_python, (trig.sin_cos, streams.bits, streams.uniform))
 
 MASK = 2**64 - 1
 

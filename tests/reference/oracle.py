@@ -5,7 +5,7 @@ in time of degree four or less; its real roots are isolated between those of its
 After a bounce the root at zero is divided out, so the same surface can be searched at once. No tolerance
 takes part, except that hits closer in time than `same_instant` count as simultaneous.
 
-For scenes of walls, bumpers, at most one paddle, and sensors; one ball; no resting contact.
+For scenes of walls (one-way, too), bumpers, arcs, at most one paddle, and sensors; one ball; no resting contact.
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+import mpmath
 from polynomials import Num, Poly, add, derivative, evaluate, multiply, roots
 
-from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
 
 BOUNCE, SENSOR, PART_STOPS = 0, 3, 4
 
@@ -54,6 +55,8 @@ class Surface(NamedTuple):
     normal: Pair | None
     along: Pair | None  # unit direction of the line
     length: Num
+    inside: bool = False  # of a circle: the ball is inside of it
+    span: tuple[Num, Num] | None = None  # of an arc: the angle at which it starts, and how far it goes on
 
 
 def dot(a: Pair, b: Pair) -> Num:
@@ -72,7 +75,7 @@ class Oracle:
     def __post_init__(self) -> None:
         scene = self.scene
         for element in scene.elements:
-            if not isinstance(element, Wall | Bumper | Paddle | Sensor):
+            if not isinstance(element, Wall | Bumper | Arc | Paddle | Sensor):
                 raise ValueError(f"the oracle knows no {type(element).__name__}")
         paddles = [k for k, e in enumerate(scene.elements) if isinstance(e, Paddle)]
         if len(paddles) > 1:
@@ -162,6 +165,19 @@ class Oracle:
                 found.append(Surface((index, name), end, velocity, radius, None, None, length))
         return found
 
+    def arc(self, index: int, arc: Arc, ball: Num) -> list[Surface]:
+        zero, center, radius = (self.number(0), self.number(0)), self.pair(arc.center), self.number(arc.radius)
+        start, end = self.number(arc.start_angle), self.number(arc.end_angle)
+        span = None if arc.closed else (start, end - start)
+        found = [Surface((index, "outside"), center, zero, radius + ball, None, None, radius, span=span)]
+        if radius > ball:
+            found.append(Surface((index, "inside"), center, zero, radius - ball, None, None, radius, True, span))
+        if ball > 0 and not arc.closed:
+            for name, angle in (("start", start), ("end", end)):
+                tip = (center[0] + radius * mpmath.cos(angle), center[1] + radius * mpmath.sin(angle))
+                found.append(Surface((index, name), tip, zero, ball, None, None, radius))
+        return found
+
     def surfaces(self) -> list[Surface]:
         found: list[Surface] = []
         zero = (self.number(0), self.number(0))
@@ -169,7 +185,10 @@ class Oracle:
         for index, element in enumerate(self.scene.elements):
             if isinstance(element, Wall):
                 start = self.pair(element.start)
-                found += self.capsule(index, start, *self.direction(start, self.pair(element.end)), ball, zero)
+                sides = self.capsule(index, start, *self.direction(start, self.pair(element.end)), ball, zero)
+                found += sides[:1] if element.one_way else sides
+            elif isinstance(element, Arc):
+                found += self.arc(index, element, ball)
             elif isinstance(element, Bumper):
                 radius = self.number(element.radius) + ball
                 found.append(Surface((index, "circle"), self.pair(element.center), zero, radius, None, None, radius))
@@ -191,6 +210,7 @@ class Oracle:
         if surface.normal is None:
             gap = add(multiply(x, x), multiply(y, y))
             gap[0] -= surface.radius * surface.radius
+            gap = [-c for c in gap] if surface.inside else gap
         else:
             gap = add([surface.normal[0] * c for c in x], [surface.normal[1] * c for c in y])
             gap[0] -= surface.radius
@@ -199,12 +219,17 @@ class Oracle:
     def keys_of_contact(self, surface: Surface) -> set[tuple[int, str]]:
         if surface.radius == 0:  # a point touches both faces of a wall at once
             return {(surface.key[0], "left"), (surface.key[0], "right")}
+        if self.scene.ball.radius == 0 and surface.key[1] in ("outside", "inside"):
+            return {(surface.key[0], "outside"), (surface.key[0], "inside")}
         return {surface.key}
 
     def beside(self, surface: Surface, t: Num) -> bool:
+        x, y = self.relative_path(surface)
+        if surface.span is not None:
+            turn = mpmath.atan2(evaluate(y, t), evaluate(x, t)) - surface.span[0]
+            return bool(turn - 2 * mpmath.pi * mpmath.floor(turn / (2 * mpmath.pi)) <= surface.span[1])
         if surface.along is None:
             return True
-        x, y = self.relative_path(surface)
         along = surface.along[0] * evaluate(x, t) + surface.along[1] * evaluate(y, t)
         return bool(0 <= along <= surface.length)
 
@@ -255,20 +280,27 @@ class Oracle:
 
     def crossings(self, until: Num) -> list[tuple[Num, int]]:
         found = []
-        zero = (self.number(0), self.number(0))
         for index, sensor in enumerate(self.scene.elements):
             if not isinstance(sensor, Sensor):
                 continue
-            start = self.pair(sensor.start)
-            e, length = self.direction(start, self.pair(sensor.end))
-            line = Surface((index, "line"), start, zero, self.number(0), (-e[1], e[0]), e, length)
+            border = self.border(index, sensor)
             last = self.last_crossing.get(index)
-            for t in roots(self.gap(line), until):
+            rate = derivative(self.gap(border))
+            for t in roots(self.gap(border), until):
                 if last is not None and self.now + t - last <= self.same_instant:
                     continue
-                if self.beside(line, t):
+                if self.beside(border, t) and (border.along is not None or evaluate(rate, t) < 0):
                     found.append((t, index))
         return sorted(found)
+
+    def border(self, index: int, sensor: Sensor) -> Surface:
+        zero, nothing = (self.number(0), self.number(0)), self.number(0)
+        if sensor.circle is not None:
+            center, radius = sensor.circle
+            return Surface((index, "circle"), self.pair(center), zero, self.number(radius), None, None, nothing)
+        start = self.pair(sensor.start)
+        e, length = self.direction(start, self.pair(sensor.end))
+        return Surface((index, "line"), start, zero, nothing, (-e[1], e[0]), e, length)
 
     # ---- the bounce
 
@@ -291,7 +323,8 @@ class Oracle:
     def normal(self, surface: Surface) -> Pair:
         if surface.normal is not None:
             return surface.normal
-        return self.direction(surface.origin, self.p)[0]
+        n = self.direction(surface.origin, self.p)[0]
+        return (-n[0], -n[1]) if surface.inside else n
 
     def after(self, element: Any, u: Pair, n: Pair) -> Pair:
         """Law, then kick, then cap."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounce_env.scene import Ball, Bumper, Element, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Ball, Bumper, Element, Paddle, Scene, Sensor, Wall
 
 Point = tuple[float, float]
 
@@ -51,6 +51,10 @@ def clearance(p: Point, element: Element) -> float:
         return math.dist(p, element.center) - element.radius
     if isinstance(element, Paddle):
         return distance_to_segment(p, element.rail_start, element.rail_end) - element.half_width - element.radius
+    if isinstance(element, Arc):
+        return abs(math.dist(p, element.center) - element.radius)
+    if isinstance(element, Sensor) and element.circle is not None:
+        return abs(math.dist(p, element.circle[0]) - element.circle[1])
     return distance_to_segment(p, element.start, element.end)
 
 
@@ -90,10 +94,28 @@ def walls_only(seed: int, *, gravity: Point = (0.0, 0.0), lossy: bool = True) ->
     return Case(scene, p, direction(rng, rng.uniform(0.5, 3)))
 
 
+def curves(rng: np.random.Generator) -> list[Element]:
+    """A cup, an arch of more than half a turn, a one-way wall and a circular sensor, for `table`."""
+    start, wide = rng.uniform(3.0, 3.4), rng.uniform(-0.6, 0.2)
+    return [
+        Arc((0.2, 0.7), rng.uniform(0.1, 0.15), start, start + rng.uniform(2.0, 3.0), b=0.95, name="cup"),
+        Arc((0.72, 0.72), rng.uniform(0.12, 0.2), wide, wide + rng.uniform(3.3, 4.5), f=0.97, name="arch"),
+        Wall((0.35, 0.5), (0.6, 0.5 + rng.uniform(-0.05, 0.05)), b=0.9, one_way=True, name="gate"),
+        Sensor(center=(0.5, rng.uniform(0.3, 0.9)), radius=0.15, name="ring"),
+    ]
+
+
 def table(
-    seed: int, *, gravity: bool, radius: float, paddle: bool = False, kick: bool = False, drain: bool = False
+    seed: int,
+    *,
+    gravity: bool,
+    radius: float,
+    paddle: bool = False,
+    kick: bool = False,
+    drain: bool = False,
+    curved: bool = False,
 ) -> Case:
-    """A field of 1.0 m x 1.4 m with bumpers, a slanted wall, sensors; on request paddle, kicks, cap."""
+    """A field of 1.0 m x 1.4 m with bumpers, a slanted wall, sensors; on request paddle, kicks, cap, curves."""
     rng = np.random.default_rng(seed)
     elements: list[Element] = list(
         box(1.0, 1.4, surfaces=[{"b": rng.uniform(0.85, 1), "f": rng.uniform(0.9, 1)} for _ in range(4)])
@@ -105,6 +127,8 @@ def table(
         elements.append(Bumper(center, rng.uniform(0.04, 0.08), **more))
     elements.append(Sensor((0.1, 0.65), (0.9, 0.55 + rng.uniform(0, 0.1)), name="line"))
     elements.append(Sensor((0.5, 0.3), (0.6, 1.35), name="upright"))
+    if curved:
+        elements += curves(rng)
     if drain:
         elements.append(Sensor((0.3, 0.2), (0.7, 0.25), drain=True, name="drain"))
     commands: tuple[tuple[float, float], ...] = ()

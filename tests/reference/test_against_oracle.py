@@ -34,6 +34,10 @@ KINDS = {
     "falling disc, kick, cap": {"gravity": True, "radius": 0.02, "kick": True},
     "straight disc, paddle": {"gravity": False, "radius": 0.02, "paddle": True},
     "falling point, paddle, kick, cap": {"gravity": True, "radius": 0.0, "paddle": True, "kick": True},
+    "straight point, curves": {"gravity": False, "radius": 0.0, "curved": True},
+    "straight disc, curves": {"gravity": False, "radius": 0.02, "curved": True},
+    "falling point, curves": {"gravity": True, "radius": 0.0, "curved": True},
+    "falling disc, curves": {"gravity": True, "radius": 0.02, "curved": True},
     "falling disc, drain": {"gravity": True, "radius": 0.02, "drain": True},
     "falling disc, paddle, kick, cap": {"gravity": True, "radius": 0.02, "paddle": True, "kick": True},
 }

@@ -1,24 +1,39 @@
 """The built-in scenes: they ship with the package and are what games.md and numerics.md say."""
 
+import math
+import re
 import subprocess
 import sys
 import zipfile
-from itertools import combinations
+from fractions import Fraction
+from importlib import resources
+from inspect import signature
+from itertools import combinations, pairwise
 from math import dist
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 import bounce_env
-from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
+from bounce_env.scene import Ball, Bumper, Element, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
 
 
 def elements(scene: Scene, spec: type) -> list:
     return [element for element in scene.elements if isinstance(element, spec)]
 
 
-def test_there_are_three():
-    assert builtin_scenes() == ("box", "paddle", "pegs")
+def test_there_are_four():
+    assert builtin_scenes() == ("box", "guides", "paddle", "pegs")
+
+
+@pytest.mark.parametrize("spec", [Scene, Ball, *get_args(Element)], ids=lambda spec: spec.__name__)
+def test_paddle_describes_every_field_of_the_format(spec):
+    text = (resources.files("bounce_env.scene") / "builtin" / "paddle.toml").read_text()
+    if spec in get_args(Element):
+        assert f'# type = "{spec.__name__.lower()}": ' in text
+    missing = [field for field in signature(spec).parameters if not re.search(rf"(?<!\w){field}(?!\w)", text)]
+    assert missing == []
 
 
 def test_they_load_from_a_zip(tmp_path):
@@ -108,3 +123,81 @@ def test_a_closed_box_of_circles_loses_nothing(name, side, circles):
     for bumper in bumpers:
         x_min, y_min, x_max, y_max = bumper.bounds
         assert min(x_min, y_min, side[0] - x_max, side[1] - y_max) > diameter
+
+
+@pytest.fixture(scope="module")
+def guides() -> dict:
+    """The elements of the built-in table by name."""
+    return {element.name: element for element in load_scene("guides").elements}
+
+
+def test_guides_is_a_small_pinball_table(guides):
+    scene = load_scene("guides")
+    assert (scene.gravity, scene.rest_speed, scene.max_speed, scene.drag) == ((0.0, -1.11), 0.02, 4.0, 1.0)
+    assert (scene.ball.radius, scene.ball.b) == (0.0135, 0.6)
+    assert len(guides) == len(scene.elements) == 16
+    assert all(wall.start[1] != wall.end[1] for wall in elements(scene, Wall))  # on no wall a ball could stay
+    bumpers = elements(scene, Bumper)
+    assert len(bumpers) == 2
+    assert min(min(bumper.kick, bumper.kick_threshold, bumper.cooldown) for bumper in bumpers) > 0
+    assert guides["rollover"].circle is not None
+    assert [sensor.name for sensor in elements(scene, Sensor) if sensor.drain] == ["drain"]
+
+
+def test_the_arch_goes_on_from_wall_to_wall(guides):
+    arch, left, right = guides["arch"], guides["left"], guides["right"]
+    x, y = arch.center
+    assert (arch.start_angle, arch.end_angle) == (0.0, math.pi)
+    assert right.end == (x + arch.radius, y)
+    assert left.end == (x - arch.radius, y)
+    assert right.start[0] == right.end[0]  # upright, as the arch is there
+    assert left.start[0] == left.end[0]
+    assert load_scene("guides").bounds[2:] == pytest.approx((0.55, 1.0))
+
+
+def test_the_lane_opens_upwards_only(guides):
+    lane, gate, right = guides["lane"], guides["gate"], guides["right"]
+    radius = load_scene("guides").ball.radius
+    assert [wall.name for wall in elements(load_scene("guides"), Wall) if wall.one_way] == ["gate"]
+    assert gate.start == lane.end
+    assert gate.end[0] == right.end[0]
+    assert gate.start[0] < gate.end[0]  # above is to the left of it
+    assert gate.start[1] < gate.end[1]  # and what lies on it rolls off to the left
+    assert right.end[0] - lane.end[0] > 3 * radius
+    for bumper in elements(load_scene("guides"), Bumper):
+        assert lane.end[0] - bumper.center[0] - bumper.radius > 3 * radius
+
+
+def test_the_guides_lead_down_without_a_step(guides):
+    left = [guides[f"guide_{i}"] for i in (1, 2, 3, 4)]
+    right = [guides["slope_1"], guides["slope_2"]]
+    for guide, wall in ((left, guides["left"]), (right, guides["lane"])):
+        assert guide[0].start[0] == wall.start[0]  # begins at the wall: no ball falls behind it
+        for one, other in pairwise(guide):
+            assert one.end == other.start
+        for part in guide:
+            assert part.end[1] < part.start[1]
+    turns = [_turn(one, other) for one, other in pairwise(left)]
+    assert turns[:2] == [0, 0]
+    assert turns[2] > 0  # less steep, a bend that the ball runs into
+    assert _turn(*right) > 0  # down to the left, turning left: steeper, a bend that it may leave
+    radius = load_scene("guides").ball.radius
+    assert right[-1].end[0] - left[-1].end[0] > 4 * radius
+
+
+def _turn(one: Wall, other: Wall) -> Fraction:
+    """The cross product of two walls' directions, exact."""
+    (ax, ay), (bx, by) = (
+        [Fraction(end) - Fraction(start) for start, end in zip(wall.start, wall.end, strict=True)]
+        for wall in (one, other)
+    )
+    return ax * by - ay * bx
+
+
+def test_nothing_passes_beside_the_drain_of_the_guides(guides):
+    drain, radius = guides["drain"], load_scene("guides").ball.radius
+    assert drain.start[1] == drain.end[1]
+    assert drain.start[0] < 0.0
+    assert drain.end[0] > 0.5
+    for name in ("left", "right", "lane"):
+        assert guides[name].start[1] < drain.start[1] - radius

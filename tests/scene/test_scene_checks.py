@@ -2,7 +2,7 @@
 
 import pytest
 
-from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Ball, Bumper, Field, Paddle, Scene, Sensor, Wall
 
 FLOOR = Wall((0, 0), (1, 0), name="floor")
 
@@ -39,6 +39,12 @@ def test_a_name_is_used_once():
             "elements[1] (bumper 'x') has b = 0.6, times ball.b = 2.0 is more than 1",
         ),
         (0.5, Wall((0, 1), (1, 1), kick=0.1), "elements[1] (wall) has kick = 0.1"),
+        (1.0, Arc((0, 5), 1, 0, 1, kick=2, name="arch"), "elements[1] (arc 'arch') has kick = 2.0"),
+        (
+            1.0,
+            Arc((0, 5), 1, 0, 1, b=1.25),
+            "elements[1] (arc) has b = 1.25, times ball.b = 1.0 is more than 1",
+        ),
     ],
 )
 def test_a_gain_needs_a_max_speed(ball_b, element, because):
@@ -55,8 +61,9 @@ def test_a_gain_with_a_paddle_needs_a_max_speed_above_the_paddles():
 
 
 def test_without_gain_no_max_speed_is_needed():
-    # the product counts, not its factors, and a sensor has none
-    scene = Scene(ball=Ball(b=2.0), elements=[Wall((0, 0), (1, 0), b=0.5), Sensor((0, 1), (1, 1))])
+    # the product counts, not its factors, and what the ball passes through has none
+    field = Field(((0, 0), (1, 0), (0, 1)), (5, 5))
+    scene = Scene(ball=Ball(b=2.0), elements=[Wall((0, 0), (1, 0), b=0.5), Sensor((0, 1), (1, 1)), field])
     assert scene.max_speed is None
     assert Scene(elements=[FLOOR, paddle()]).max_speed is None
 
@@ -77,6 +84,14 @@ SIZES = "in a scene whose longer side is 1e+03 m and whose largest coordinate is
     [
         (lambda x: Bumper((0, 5), x), "elements.1.radius", 1e-3, "at least 0.001 m"),
         (lambda x: paddle(radius=x), "elements.1.radius", 1e-3, "at least 0.001 m"),
+        (lambda x: Arc((0, 5), x, 0, 6), "elements.1.radius", 1e-3, "at least 0.001 m"),
+        (lambda x: Sensor(center=(0, 5), radius=x), "elements.1.radius", 1e-3, "at least 0.001 m"),
+        (
+            lambda x: Arc((0, 5), 0.1, 0, 10 * x),
+            "elements.1.end_angle",
+            1e-6,
+            "such that the arc is at least 1e-06 m long",
+        ),
         (lambda x: paddle(half_width=x), "elements.1.half_width", 1e-6, "0 or at least 1e-06 m"),
         (
             lambda x: Wall((0, 0), (0, x)),
@@ -112,6 +127,31 @@ def test_a_ball_is_a_point_or_a_disc_that_can_be_told_from_one():
     assert refusals(ball=Ball(0.99e-3), elements=[WIDE]) == [("ball.radius", 0.99e-3, message)]
 
 
+def test_no_corner_of_a_field_is_flat_in_proportion():
+    assert Scene(elements=[WIDE, Field(((0, 0), (10, 0), (5, 1.01e-6)), (1, 0))])
+    [(field, _, message)] = refusals(elements=[WIDE, Field(((0, 0), (10, 0), (5, 0.99e-6)), (1, 0))])
+    assert field == "elements.1.points"
+    line = "off the line through the corners beside it"
+    assert message == f"must be such that [5.0, 9.9e-07] is at least 1e-06 m {line}, {SIZES}"
+
+
+def test_no_arc_is_out_of_proportion_to_the_scene():
+    """Its centre may be far outside of all that the scene occupies, and distances from it are as long."""
+    assert Scene(elements=[WIDE, Arc((0, 0.99e6), 0.99e6, 4.712, 4.7121)])
+    [(field, value, message)] = refusals(elements=[WIDE, Arc((0, 1.01e6), 1.01e6, 4.712, 4.7121)])
+    assert (field, value, message) == ("elements.1.radius", 1.01e6, f"must be at most 1e+06 m, {SIZES}")
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.99e-3, -0.99e-3])
+def test_no_ball_is_as_large_as_an_arc(gap):
+    """Inside of the arc its centre would keep to a circle too small to be told from a point."""
+    arc = Arc((500, 500), 2.0, 0, 3)
+    message = f"must be at least 0.001 m more or less than ball.radius = {2.0 + gap}, {SIZES}"
+    assert refusals(ball=Ball(2.0 + gap), elements=[WIDE, arc]) == [("elements.1.radius", 2.0, message)]
+    for other in (0.0, 2.0 - 1.01e-3, 2.0 + 1.01e-3, 4.0):
+        assert Scene(ball=Ball(other), elements=[WIDE, arc])
+
+
 @pytest.mark.parametrize("corner", [(1e8, 0), (-1e8 - 1, 0), (0, 1e8), (0, -1e8 - 1)])
 def test_far_from_the_origin_lengths_are_ones_that_float64_can_tell_apart(corner):
     x, y = corner
@@ -128,6 +168,12 @@ def test_far_from_the_origin_walls_have_lengths_that_float64_can_tell_apart():
     [(field, _, message)] = refusals(elements=[far, Wall((1e8, 0), (1e8, 0.99e-4))])
     assert field == "elements.1.end"
     assert message.startswith("must be at least 0.0001 m away from start = [100000000.0, 0.0]")
+
+
+def test_an_elements_errors_are_all_reported():
+    elements = [WIDE, Arc((0, 5), 1e-4, 0, 1e-3)]
+    fields = [field for field, *_ in refusals(ball=Ball(1.01e-3), elements=elements)]
+    assert fields == ["elements.1.radius", "elements.1.radius", "elements.1.end_angle"]
 
 
 def test_all_that_is_wrong_is_reported_together():

@@ -20,7 +20,7 @@ from bounce_env.scene import (
 POINT = "two numbers [x, y], each from -1e+09 to 1e+09"
 ZERO_OR_MORE = "a number >= 0 (at most 1e+09)"
 POSITIVE = "a number > 0 (from 1e-09 to 1e+09)"
-WALL_FIELDS = "start, end, b, f, kick, kick_threshold, name"
+WALL_FIELDS = "start, end, b, f, kick, kick_threshold, cooldown, name, one_way"
 
 
 def element(kind: str, fields: str) -> str:
@@ -31,8 +31,8 @@ ENDS = "start = [0, 0]\nend = [1, 0]"
 CENTER = "center = [0, 0]"
 RAIL = "rail_start = [0, 0]\nrail_end = [0, 0]\nhalf_width = 1\nradius = 1\nmax_speed = 1"
 FLOOR = element("wall", f'{ENDS}\nname = "floor"')
-TYPES = "one of wall, bumper, paddle, sensor"
-SCENE_FIELDS = "unknown field: must be one of gravity, ball, rest_speed, max_speed, elements"
+TYPES = "one of wall, bumper, arc, paddle, sensor, field"
+SCENE_FIELDS = "unknown field: must be one of gravity, ball, rest_speed, max_speed, drag, elements"
 BALL_FIELDS = "radius, b, f"
 
 
@@ -175,11 +175,8 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         ("max_sped = 3", "max_sped = 3", SCENE_FIELDS),
         ("[[element]]\na = 1", "element = [{'a': 1}]", SCENE_FIELDS),
         ('"a\\nb" = 1', r"'a\nb' = 1", SCENE_FIELDS),
-        (
-            "rest_speed = 0.5",
-            "rest_speed = 0.5",
-            "must be 0: a rest speed > 0 is not supported in this release, which has no contact",
-        ),
+        ("rest_speed = -0.5", "rest_speed = -0.5", "must be 0 or a number from 1e-09 to 1e+09"),
+        ("drag = 1.5", "drag = 1.5", "must be a number > 0 and <= 1 (at least 1e-09)"),
         ("ball = 3", "ball = 3", f"must be a table of {BALL_FIELDS}"),
         ("[[ball]]\nradius = 1", "ball = [{'radius': 1}]", f"must be a table of {BALL_FIELDS}"),
         ("[ball]\nmass = 1", "ball: mass = 1", f"unknown field: must be one of {BALL_FIELDS}"),
@@ -191,12 +188,12 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         ("elements = [[]]", "elements[0] = []", "must be a table, under a line [[elements]]"),
         ("[[elements]]", "elements[0]: type", f"required: {TYPES}"),
         ("[[elements]]\ntype = []", "elements[0]: type = []", f"must be {TYPES}"),
-        (element("arc", ""), "elements[0]: type = 'arc'", f"must be {TYPES}"),
+        (element("flipper", ""), "elements[0]: type = 'flipper'", f"must be {TYPES}"),
         (element("Wall", ENDS), "elements[0]: type = 'Wall'", f"must be {TYPES}"),
         (element("wall", "start = [0, 0]"), "elements[0] (wall): end", f"required: {POINT}"),
         (
-            element("wall", f"{ENDS}\none_way = true"),
-            "elements[0] (wall): one_way = true",
+            element("wall", f"{ENDS}\ndraggable = true"),
+            "elements[0] (wall): draggable = true",
             f"unknown field: must be one of {WALL_FIELDS}",
         ),
         (
@@ -232,7 +229,7 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         (
             element("sensor", f"{ENDS}\nb = 1"),
             "elements[0] (sensor): b = 1",
-            "unknown field: must be one of start, end, drain, name",
+            "unknown field: must be one of start, end, center, radius, drain, name",
         ),
         (element("sensor", f"{ENDS}\nname = 3"), "elements[0] (sensor): name = 3", "must be printable text"),
         (
@@ -331,12 +328,12 @@ def test_a_source_that_is_neither_name_nor_path(source):
 def test_an_unknown_name_lists_the_built_in_scenes(name):
     with pytest.raises(SceneError) as caught:
         load_scene(name)
-    assert str(caught.value) == f"scene {name!r}: must be one of box, paddle, pegs, or the path of a .toml file"
+    assert str(caught.value) == f"scene {name!r}: must be one of box, guides, paddle, pegs, or the path of a .toml file"
 
 
 @pytest.mark.parametrize("data", [None, 3, [], "paddle"])
 def test_a_dict_that_is_none(data):
-    allowed = "must be a table of gravity, ball, rest_speed, max_speed, elements"
+    allowed = "must be a table of gravity, ball, rest_speed, max_speed, drag, elements"
     with pytest.raises(SceneError) as caught:
         scene_from_dict(data, "here")
     assert str(caught.value) == f"here: {data!r}: {allowed}"

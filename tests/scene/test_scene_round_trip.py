@@ -1,5 +1,6 @@
 """A scene written as TOML and read back is the same scene, to the bit."""
 
+import math
 import tomllib
 from dataclasses import replace
 
@@ -9,8 +10,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bounce_env.scene import (
+    Arc,
     Ball,
     Bumper,
+    Field,
     Paddle,
     Scene,
     Sensor,
@@ -21,16 +24,30 @@ from bounce_env.scene import (
     scene_from_dict,
 )
 
+
+def polygon(corners: int, center: tuple[float, float], radius: float) -> list[tuple[float, float]]:
+    angles = [2 * math.pi * i / corners for i in range(corners)]
+    return [(center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle)) for angle in angles]
+
+
 # Sizes are such that no scene is refused; the digits of all numbers are arbitrary.
 SIZE = st.floats(0.01, 10.0)
 FACTOR = st.floats(0.0, 10.0)
 POINT = st.tuples(st.floats(-100.0, 100.0), st.floats(-100.0, 100.0))
 SEGMENT = st.tuples(POINT, POINT).filter(lambda ends: abs(ends[0][0] - ends[1][0]) > 0.01)
-SURFACE = {"b": FACTOR, "f": st.floats(0.0, 1.0), "kick": FACTOR, "kick_threshold": FACTOR}
+SURFACE = {"b": FACTOR, "f": st.floats(0.0, 1.0), "kick": FACTOR, "kick_threshold": FACTOR, "cooldown": FACTOR}
 NAME = st.text(st.characters(exclude_categories=["C", "Z"]) | st.sampled_from(" \"'\\#=[]"), min_size=1, max_size=8)
 ELEMENT = st.one_of(
-    st.builds(lambda ends, **fields: Wall(*ends, **fields), SEGMENT, **SURFACE),
+    st.builds(lambda ends, **fields: Wall(*ends, **fields), SEGMENT, one_way=st.booleans(), **SURFACE),
     st.builds(Bumper, POINT, SIZE, **SURFACE),
+    st.builds(
+        lambda center, radius, start, span, **fields: Arc(center, radius, start, start + span, **fields),
+        POINT,
+        st.floats(11.0, 20.0),  # no ball is as large
+        st.floats(-10.0, 10.0),
+        st.floats(0.01, 6.28) | st.just(2 * math.pi),
+        **SURFACE,
+    ),
     st.builds(
         lambda ends, **fields: Paddle(*ends, **fields),
         SEGMENT,
@@ -40,6 +57,16 @@ ELEMENT = st.one_of(
         **SURFACE,
     ),
     st.builds(lambda ends, drain: Sensor(*ends, drain=drain), SEGMENT, st.booleans()),
+    st.builds(
+        lambda center, radius, drain: Sensor(center=center, radius=radius, drain=drain), POINT, SIZE, st.booleans()
+    ),
+    st.builds(
+        lambda corners, center, radius, acceleration: Field(polygon(corners, center, radius), acceleration),
+        st.integers(3, 8),
+        POINT,
+        SIZE,
+        POINT,
+    ),
 )
 SCENE = st.builds(
     lambda elements, names, **fields: Scene(
@@ -50,7 +77,9 @@ SCENE = st.builds(
     st.lists(NAME, min_size=6, max_size=6, unique=True),
     gravity=POINT,
     ball=st.builds(Ball, st.just(0.0) | SIZE, FACTOR, st.floats(0.0, 1.0)),
+    rest_speed=st.just(0.0) | SIZE,
     max_speed=st.floats(10.0, 1e9, exclude_min=True),
+    drag=st.floats(0.01, 1.0),
 )
 
 

@@ -9,41 +9,61 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Ball, Bumper, Field, Paddle, Scene, Sensor, Wall
 
 SEGMENT = {"start": (0.0, 0.0), "end": (3.0, 4.0)}
 CIRCLE = {"center": (0.0, 0.0), "radius": 1.0}
 RAIL = {"rail_start": (0.0, 0.0), "rail_end": (3.0, 4.0), "half_width": 0.1, "radius": 0.1, "max_speed": 1.0}
-GOOD = {Ball: {}, Wall: SEGMENT, Bumper: CIRCLE, Paddle: RAIL, Sensor: SEGMENT, Scene: {}}
+ARC = {**CIRCLE, "start_angle": 0.0, "end_angle": 2.0}
+TRIANGLE = {"points": ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)), "acceleration": (0.0, 1.0)}
+GOOD = {
+    Ball: {},
+    Wall: SEGMENT,
+    Bumper: CIRCLE,
+    Arc: ARC,
+    Paddle: RAIL,
+    Sensor: SEGMENT,
+    Field: TRIANGLE,
+    Scene: {},
+}
 
 ZERO_OR_MORE = "must be a number >= 0 (at most 1e+09)"
 ZERO_TO_ONE = "must be a number >= 0 and <= 1"
 POSITIVE = "must be a number > 0 (from 1e-09 to 1e+09)"
 ZERO_OR_POSITIVE = "must be 0 or a number from 1e-09 to 1e+09"
-NO_REST_SPEED = "must be 0: a rest speed > 0 is not supported in this release, which has no contact"
+SHARE = "must be a number > 0 and <= 1 (at least 1e-09)"
+ANGLE = "must be a number of radians, from -100 to 100"
 POINT = "must be two numbers [x, y], each from -1e+09 to 1e+09"
-SURFACE = {"b": ZERO_OR_MORE, "f": ZERO_TO_ONE, "kick": ZERO_OR_MORE, "kick_threshold": ZERO_OR_MORE}
+SURFACE = {
+    "b": ZERO_OR_MORE,
+    "f": ZERO_TO_ONE,
+    "kick": ZERO_OR_MORE,
+    "kick_threshold": ZERO_OR_MORE,
+    "cooldown": ZERO_OR_MORE,
+}
 
 NUMBERS = [
-    *((spec, field, words) for spec in (Wall, Bumper, Paddle) for field, words in SURFACE.items()),
+    *((spec, field, words) for spec in (Wall, Bumper, Arc, Paddle) for field, words in SURFACE.items()),
     (Ball, "radius", ZERO_OR_POSITIVE),
     (Ball, "b", ZERO_OR_MORE),
     (Ball, "f", ZERO_TO_ONE),
     (Bumper, "radius", POSITIVE),
+    (Arc, "radius", POSITIVE),
     (Paddle, "half_width", ZERO_OR_POSITIVE),
     (Paddle, "radius", POSITIVE),
     (Paddle, "max_speed", POSITIVE),
     (Scene, "max_speed", POSITIVE),
-    (Scene, "rest_speed", NO_REST_SPEED),
+    (Scene, "rest_speed", ZERO_OR_POSITIVE),
+    (Scene, "drag", SHARE),
 ]
 POINTS = [
     (Wall, "start"),
     (Wall, "end"),
     (Bumper, "center"),
+    (Arc, "center"),
     (Paddle, "rail_start"),
     (Paddle, "rail_end"),
-    (Sensor, "start"),
-    (Sensor, "end"),
+    (Field, "acceleration"),
     (Scene, "gravity"),
 ]
 NO_NUMBER = [
@@ -112,6 +132,8 @@ def test_refuses_what_is_no_point(spec, field, value):
         (Bumper, "radius", 1e-9, 1e9),
         (Paddle, "max_speed", 1e-9, 1e9),
         (Scene, "max_speed", 1e-9, 1e9),
+        (Scene, "rest_speed", 0.0, 1e9),
+        (Scene, "drag", 1e-9, 1.0),
     ],
     ids=name,
 )
@@ -156,7 +178,12 @@ def test_minus_zero_becomes_zero():
                 ("max_speed", POSITIVE),
             ],
         ),
-        (Sensor, {}, [("start", POINT), ("end", POINT)]),
+        (Arc, {}, [("center", POINT), ("radius", POSITIVE), ("start_angle", ANGLE), ("end_angle", ANGLE)]),
+        (
+            Field,
+            {},
+            [("points", "must be at least 3 points [x, y], each number from -1e+09 to 1e+09"), ("acceleration", POINT)],
+        ),
     ],
     ids=name,
 )
@@ -169,17 +196,13 @@ def test_a_missing_field_says_what_it_takes(spec, given, missing):
     ("spec", "field", "allowed"),
     [
         (Ball, "mass", "radius, b, f"),
-        (Wall, "one_way", "start, end, b, f, kick, kick_threshold, name"),
-        (Wall, "draggable", "start, end, b, f, kick, kick_threshold, name"),
-        (Bumper, "cooldown", "center, radius, b, f, kick, kick_threshold, name"),
-        (
-            Paddle,
-            "width",
-            "rail_start, rail_end, half_width, radius, max_speed, b, f, kick, kick_threshold, name",
-        ),
-        (Sensor, "center", "start, end, drain, name"),
-        (Sensor, "b", "start, end, drain, name"),
-        (Scene, "walls", "gravity, ball, rest_speed, max_speed, elements"),
+        (Wall, "draggable", f"start, end, one_way, {', '.join(SURFACE)}, name"),
+        (Bumper, "one_way", f"center, radius, {', '.join(SURFACE)}, name"),
+        (Arc, "angle", f"center, radius, start_angle, end_angle, {', '.join(SURFACE)}, name"),
+        (Paddle, "width", f"rail_start, rail_end, half_width, radius, max_speed, {', '.join(SURFACE)}, name"),
+        (Sensor, "b", "start, end, center, radius, drain, name"),
+        (Field, "drag", "points, acceleration, name"),
+        (Scene, "walls", "gravity, ball, rest_speed, max_speed, drag, elements"),
     ],
     ids=name,
 )
@@ -210,6 +233,7 @@ def test_two_ends_are_two_points(spec, start, end, point):
 @pytest.mark.parametrize("value", [1, 0, "true", None, np.True_], ids=name)
 def test_a_flag_is_true_or_false(value):
     assert refusals(Sensor, **SEGMENT, drain=value) == [("drain", value, "must be true or false")]
+    assert refusals(Wall, **SEGMENT, one_way=value) == [("one_way", value, "must be true or false")]
 
 
 @pytest.mark.parametrize("value", [3, None, True, b"a", "a\nb", "a\x00", "\x7f", "\ud800"], ids=name)
@@ -218,7 +242,7 @@ def test_a_name_is_printable_text(value):
 
 
 def test_a_scene_takes_specs_only():
-    allowed = "must be a Wall, Bumper, Paddle or Sensor"
+    allowed = "must be a Wall, Bumper, Arc, Paddle, Sensor or Field"
     ball = Ball()
     assert refusals(Scene, elements=[Wall(**SEGMENT), 3, ball]) == [
         ("elements.1", 3, allowed),
@@ -226,7 +250,7 @@ def test_a_scene_takes_specs_only():
     ]
     assert refusals(Scene, ball={"radius": 1}) == [("ball", {"radius": 1}, "must be a Ball")]
     for elements in ({Wall(**SEGMENT)}, Wall(**SEGMENT), None, "wall", iter([])):
-        message = "must be a tuple or list of Wall, Bumper, Paddle and Sensor"
+        message = "must be a tuple or list of Wall, Bumper, Arc, Paddle, Sensor and Field"
         assert refusals(Scene, elements=elements) == [("elements", elements, message)]
 
 
@@ -237,13 +261,19 @@ def test_all_errors_are_reported_together():
 
 def test_signatures_are_those_of_the_design():
     assert Ball(0.5, 2.0, 0.5) == Ball(radius=0.5, b=2.0, f=0.5)
-    assert Wall((0, 0), (1, 1)) == Wall(start=(0, 0), end=(1, 1), b=1.0, f=1.0, kick=0.0, kick_threshold=0.0, name="")
-    assert Bumper((0, 0), 2) == Bumper(center=(0, 0), radius=2.0)
+    surface = {"b": 1.0, "f": 1.0, "kick": 0.0, "kick_threshold": 0.0, "cooldown": 0.0, "name": ""}
+    assert Wall((0, 0), (1, 1)) == Wall(start=(0, 0), end=(1, 1), one_way=False, **surface)
+    assert Bumper((0, 0), 2) == Bumper(center=(0, 0), radius=2.0, **surface)
+    assert Arc((0, 0), 2, 0, 1) == Arc(center=(0, 0), radius=2.0, start_angle=0.0, end_angle=1.0, **surface)
     assert Sensor((0, 0), (1, 1)) == Sensor(start=(0, 0), end=(1, 1), drain=False, name="")
-    assert Scene() == Scene(gravity=(0.0, -9.81), ball=Ball(0.0), rest_speed=0.0, max_speed=None, elements=())
+    corners = ((0, 0), (1, 0), (0, 1))
+    assert Field(corners, (0, 1)) == Field(points=corners, acceleration=(0.0, 1.0), name="")
+    assert Scene() == Scene(gravity=(0.0, -9.81), ball=Ball(0.0), rest_speed=0.0, max_speed=None, drag=1.0, elements=())
     for too_many in (
         lambda: Wall((0, 0), (1, 1), 1.0),
         lambda: Bumper((0, 0), 1, 1.0),
+        lambda: Arc((0, 0), 1, 0, 1, 1.0),
+        lambda: Field(corners, (0, 1), "wind"),
         lambda: Paddle((0, 0), (1, 1), 1.0, half_width=0, radius=1, max_speed=1),
         lambda: Sensor((0, 0), (1, 1), True),
         lambda: Scene((0, 0)),
@@ -253,7 +283,7 @@ def test_signatures_are_those_of_the_design():
 
 
 def test_specs_are_frozen_values():
-    scene = Scene(elements=[Wall(**SEGMENT, name="a"), Sensor(**SEGMENT)])
+    scene = Scene(elements=[Wall(**SEGMENT, name="a"), Sensor(**SEGMENT), Arc(**ARC), Field(**TRIANGLE)])
     for copied in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene), dataclasses.replace(scene)):
         assert copied == scene
         assert hash(copied) == hash(scene)

@@ -1,0 +1,195 @@
+"""The end of a flight: the ball is put on the surface that it has hit, its sides of all lines are brought up to date.
+
+Sides matter to a ball of no radius, which can be on a wall, and to what is crossed without a bounce.
+"""
+
+import math
+
+from bounce_env.engine.jit import Record, Table, function
+from bounce_env.engine.layout import NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE, State, Tables
+from bounce_env.engine.parts import rail_offset
+from bounce_env.engine.search import contact_normal
+from bounce_env.engine.tolerances import ULPS_OF_SPEED
+from bounce_env.engine.touch import on_capsule
+
+
+@function
+def snap(ball: Record, tables: Tables, paddles: Table, w: int, scene: int) -> None:
+    """Put the ball on the surface of what it hits, along the normal: the rounding of the flight ends here."""
+    if ball.next_kind == NEXT_PART:
+        _snap_to_paddle(ball, tables.rails, paddles, w, scene)
+    elif ball.hit_kind == ON_FACE:
+        _snap_to_face(ball, tables.faces, ball.hit_index, scene)
+    elif ball.hit_kind == ON_CIRCLE:
+        _snap_to_circle(ball, tables.circles, scene)
+    elif ball.hit_kind == ON_ARC:
+        _snap_to_arc(ball, tables.arcs, scene)
+    elif ball.contact >= 0:
+        _snap_to_face(ball, tables.faces, ball.contact, scene)
+
+
+@function
+def _snap_to_face(ball: Record, faces: Table, index: int, scene: int) -> None:
+    if faces is None:
+        return
+    face = faces[scene, index]
+    height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
+    error = height - math.copysign(face.reach, height)
+    ball.x += error * face.uy
+    ball.y -= error * face.ux
+
+
+@function
+def _snap_to_circle(ball: Record, circles: Table, scene: int) -> None:
+    if circles is None:
+        return
+    circle = circles[scene, ball.hit_index]
+    dx, dy = ball.x - circle.x, ball.y - circle.y
+    stretch = circle.reach / math.sqrt(dx * dx + dy * dy)
+    ball.x = circle.x + dx * stretch
+    ball.y = circle.y + dy * stretch
+
+
+@function
+def _snap_to_arc(ball: Record, arcs: Table, scene: int) -> None:
+    if arcs is None:
+        return
+    arc = arcs[scene, ball.hit_index]
+    dx, dy = ball.x - arc.x, ball.y - arc.y
+    distance = math.sqrt(dx * dx + dy * dy)
+    reach = arc.outer if abs(distance - arc.outer) <= abs(distance - arc.inner) else arc.inner
+    ball.x = arc.x + dx * (reach / distance)
+    ball.y = arc.y + dy * (reach / distance)
+
+
+@function
+def _snap_to_paddle(ball: Record, rails: Table, paddles: Table, w: int, scene: int) -> None:
+    if rails is None:
+        return
+    rail, paddle = rails[scene, ball.part_index], paddles[w, ball.part_index]
+    offset = rail_offset(paddle, ball.hi, ball.lo)
+    cx, cy = rail.x + offset * rail.ux, rail.y + offset * rail.uy
+    nx, ny, distance = on_capsule(ball.x - cx, ball.y - cy, rail.ux, rail.uy, rail.half_width)
+    ball.x += (rail.reach - distance) * nx
+    ball.y += (rail.reach - distance) * ny
+
+
+@function
+def _side_after(height: float, rate: float, height0: float, rate0: float, slow: float, slack: float, side: int) -> int:
+    """On which side of a line the ball is: away from it the height tells, on it the way that it came.
+
+    It came from the side that it moves away from, unless it was there already when its flight began and has not
+    turned round since; then it keeps the side that it had.
+    """
+    if abs(height) > slack:
+        return 1 if height > 0.0 else -1
+    if abs(rate) > slow and (abs(height0) > slack or rate * rate0 < 0.0):
+        return 1 if rate < 0.0 else -1
+    return side
+
+
+@function
+def arrive(state: State, tables: Tables, w: int, k: int, x0: float, y0: float, vx0: float, vy0: float) -> None:
+    """Bring a ball's sides of walls and arcs up to date before it bounces.
+
+    (x0, y0) [m] and (vx0, vy0) [m/s] are where and how its flight began.
+    """
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head = tables.scenes[scene]
+    nx, ny = contact_normal(state, tables.faces, w, k)
+    _arrive_at_lines(ball, tables.faces, head.faces, state.face_sides, w, k, scene, x0, y0, vx0, vy0)
+    if ball.hit_kind == OFF_END and ball.next_kind != NEXT_PART:
+        _turn_corner(ball, tables.faces, head.faces, state.face_sides, w, k, scene, nx, ny)
+    _arrive_at_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, x0, y0, vx0, vy0)
+
+
+@function
+def _arrive_at_lines(
+    ball: Record, lines: Table, count: int, sides: Table, w: int, k: int, scene: int,
+    x0: float, y0: float, vx0: float, vy0: float,
+) -> None:  # fmt: skip
+    if lines is None or sides is None:
+        return
+    slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
+    for i in range(count):
+        line = lines[scene, i]
+        height = (ball.y - line.y) * line.ux - (ball.x - line.x) * line.uy
+        height0 = (y0 - line.y) * line.ux - (x0 - line.x) * line.uy
+        rate, rate0 = ball.vy * line.ux - ball.vx * line.uy, vy0 * line.ux - vx0 * line.uy
+        sides[w, k, i] = _side_after(height, rate, height0, rate0, slow, ball.slack, sides[w, k, i])
+
+
+@function
+def _arrive_at_arcs(
+    ball: Record, arcs: Table, count: int, sides: Table, w: int, k: int, scene: int,
+    x0: float, y0: float, vx0: float, vy0: float,
+) -> None:  # fmt: skip
+    if arcs is None or sides is None:
+        return
+    slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
+    for i in range(count):
+        arc = arcs[scene, i]
+        dx, dy, dx0, dy0 = ball.x - arc.x, ball.y - arc.y, x0 - arc.x, y0 - arc.y
+        distance = math.sqrt(dx * dx + dy * dy)
+        height, height0 = distance - arc.outer, math.sqrt(dx0 * dx0 + dy0 * dy0) - arc.outer
+        rate, rate0 = (ball.vx * dx + ball.vy * dy) / distance, vx0 * dx0 + vy0 * dy0
+        sides[w, k, i] = _side_after(height, rate, height0, rate0, slow, ball.slack, sides[w, k, i])
+
+
+@function
+def _turn_corner(
+    ball: Record, faces: Table, count: int, sides: Table, w: int, k: int, scene: int, nx: float, ny: float
+) -> None:
+    """A point that slides off a wall's end is, of each wall that begins there, on the side that it comes to.
+
+    Turning about the end from the wall that it leaves through the side that it is on, that is the side met first.
+    """
+    if faces is None or sides is None:
+        return
+    left = faces[scene, ball.contact]
+    along = (ball.x - left.x) * left.ux + (ball.y - left.y) * left.uy
+    back = -1.0 if along > 0.5 * left.length else 1.0
+    turn = 1.0 if back * (left.ux * ny - left.uy * nx) > 0.0 else -1.0
+    for i in range(count):
+        face = faces[scene, i]
+        dx, dy = ball.x - face.x, ball.y - face.y
+        if i == ball.contact or abs(dy * face.ux - dx * face.uy) > ball.slack:
+            continue
+        along = dx * face.ux + dy * face.uy
+        if abs(along) <= ball.slack:
+            sides[w, k, i] = -1 if turn > 0.0 else 1
+        elif abs(along - face.length) <= ball.slack:
+            sides[w, k, i] = 1 if turn > 0.0 else -1
+
+
+@function
+def face_crossings(state: State, tables: Tables, w: int, k: int) -> None:
+    """Bring the ball's sides of sensors and fields up to date where its place tells; a crossing itself flips them."""
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head = tables.scenes[scene]
+    _face_lines(ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene)
+    _face_lines(ball, tables.edges, head.fields, state.edge_sides, w, k, scene)
+    _face_rings(ball, tables.rings, head.rings, state.ring_sides, w, k, scene)
+
+
+@function
+def _face_lines(ball: Record, lines: Table, count: int, sides: Table, w: int, k: int, scene: int) -> None:
+    if lines is None or sides is None:
+        return
+    for i in range(count):
+        line = lines[scene, i]
+        height = (ball.y - line.y) * line.ux - (ball.x - line.x) * line.uy
+        if abs(height) > ball.slack:
+            sides[w, k, i] = 1 if height > 0.0 else -1
+
+
+@function
+def _face_rings(ball: Record, rings: Table, count: int, sides: Table, w: int, k: int, scene: int) -> None:
+    if rings is None or sides is None:
+        return
+    for i in range(count):
+        ring = rings[scene, i]
+        dx, dy = ball.x - ring.x, ball.y - ring.y
+        height = math.sqrt(dx * dx + dy * dy) - ring.radius
+        if abs(height) > ball.slack:
+            sides[w, k, i] = 1 if height > 0.0 else -1

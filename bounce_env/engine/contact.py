@@ -1,0 +1,269 @@
+"""What a ball does after its bounces at one instant: it flies, slides along a wall, or rests.
+
+A contact is a constraint, not a series of tiny bounces. On a wall that stands the ball slides in closed form under the
+tangential part of its acceleration; ever smaller bounces that lead there are summed in closed form (the geometric
+series of anchors/numerics.md, check 2). On curves there is none: there the ball rests, or rolls by small hops.
+"""
+
+import math
+
+from bounce_env.engine.arrive import face_crossings
+from bounce_env.engine.jit import Record, Table, function
+from bounce_env.engine.layout import (
+    CONTACT_BEGINS,
+    CONTACT_ENDS,
+    FLYING,
+    HELD,
+    RESOLVE,
+    State,
+    Tables,
+)
+from bounce_env.engine.resolve import (
+    along_speed,
+    bounce_from_all,
+    closing_speed,
+    count_bounce,
+    is_soft,
+    log,
+    press_of,
+    rolling_speed,
+    slow_speed,
+)
+from bounce_env.engine.search import plan_rest, plan_standing
+from bounce_env.engine.tolerances import ALIGNED, BALANCE, CORNER, PRESSING, STANDING, SWING, ULPS_OF_LENGTH
+from bounce_env.engine.touch import collect_touches
+
+
+@function
+def resolve(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
+    """Bounce a ball from all that it touches, decide what it does next, and plan that."""
+    ball = state.balls[w, k]
+    if abs(ball.vx) + abs(ball.vy) < STANDING:
+        ball.vx, ball.vy = 0.0, 0.0
+    extent = tables.scenes[state.worlds[w].scene].extent
+    if tables.gravity is not None and _is_slow(ball, extent):
+        # Between several surfaces the last bounces go to and fro: what lies within their reach counts as touched.
+        ball.slack = max(ball.slack, CORNER * ULPS_OF_LENGTH * extent)
+    contact, support, settling = ball.contact, ball.support, ball.settling
+    ball.settling = 0
+    collect_touches(state, tables, w, k)
+    single, corner, vx0, vy0 = bounce_from_all(state, tables, w, k, ledger)
+    _let_go(ball)
+    i = -1
+    if tables.gravity is not None:
+        i = _find_contact(state, tables, w, k)
+        if settling:
+            contact, support = FLYING, -1  # that contact had not begun yet
+        changed = ball.contact != contact or ball.support != support
+        if support >= 0 and changed:
+            _log_end(state, w, k, support, vx0, vy0, ledger)
+        if i >= 0 and changed:
+            touch = state.touches[w, i]
+            log(
+                ledger, state.worlds[w], ball, k, touch.element, CONTACT_BEGINS,
+                touch.nx, touch.ny, vx0, vy0, touch.ux, touch.uy,
+            )  # fmt: skip
+            corner = -1
+    if corner >= 0:
+        count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
+    if ball.contact == FLYING and (tables.gravity is not None or tables.arcs is not None):
+        _roll(state, tables, w, k, ledger)
+    face_crossings(state, tables, w, k)
+    vx, vy, duration = ball.vx, ball.vy, -1.0
+    if tables.gravity is not None and single >= 0 and ball.contact == FLYING:
+        duration = _settle(state, tables, tables.faces, w, k, single)
+    for _ in range(2):
+        plan_standing(state, tables, w, k)
+        if duration < 0.0 or ball.hit_after > duration:
+            break
+        # Something comes before the bounces are over: they go on one by one.
+        _let_go(ball)
+        ball.vx, ball.vy, ball.settling, duration = vx, vy, 0, -1.0
+    if duration >= 0.0:
+        ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
+    plan_rest(state, tables, w, k)
+
+
+@function
+def _is_slow(ball: Record, extent: float) -> bool:
+    """Whether the ball could not rise above the tolerance of corners."""
+    pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+    return ball.vx * ball.vx + ball.vy * ball.vy <= 2.0 * pull * (CORNER * ULPS_OF_LENGTH * extent)
+
+
+@function
+def _let_go(ball: Record) -> None:
+    ball.contact, ball.support = FLYING, -1
+    ball.ax, ball.ay = ball.gx, ball.gy
+
+
+@function
+def _find_contact(state: State, tables: Tables, w: int, k: int) -> int:
+    """Hold the ball, or let it slide on a wall, where it is pressed on what it touches; -1 where it flies.
+
+    Returns which touched surface supports it.
+    """
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head = tables.scenes[scene]
+    for i in range(ball.touched):
+        touch = state.touches[w, i]
+        if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or press_of(ball, touch) == 0.0:
+            continue
+        f = tables.elements[scene, touch.element].f
+        if f == 0.0 or (f < 1.0 and head.rest_speed == 0.0):
+            return _hold(ball, touch, i)
+        if _swings_out(ball, touch, head.rest_speed):
+            return _hold(ball, touch, i)
+    if ball.gx == 0.0 and ball.gy == 0.0:
+        return -1
+    if _is_slow(ball, head.extent):
+        i = _carrier(ball, state.touches, w)
+        if i >= 0:
+            return _hold(ball, state.touches[w, i], i)
+    for i in range(ball.touched):
+        if _slides_on(ball, tables.faces, state.touches, w, scene, i):
+            return i
+    return -1
+
+
+@function
+def _swings_out(ball: Record, touch: Record, rest_speed: float) -> bool:
+    """Whether a ball in the hollow of a curve, or on top of one, moves so little to and fro that it is taken to rest.
+
+    Told by the speed at which it comes, or came, through the point where the normal alone carries it.
+    """
+    if touch.bend == 0.0 or ball.gx * touch.nx + ball.gy * touch.ny >= 0.0:
+        return False
+    along, across = along_speed(ball, touch), ball.gx * touch.ny - ball.gy * touch.nx
+    pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+    speed = math.sqrt(along * along + across * across / (abs(touch.bend) * pull))
+    natural = math.sqrt(pull / abs(touch.bend))
+    return speed <= (max(rest_speed, SWING * natural) if touch.bend < 0.0 else BALANCE * natural)
+
+
+@function
+def _hold(ball: Record, touch: Record, i: int) -> int:
+    ball.contact, ball.support = HELD, touch.element
+    ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
+    return i
+
+
+@function
+def _carrier(ball: Record, touches: Table, w: int) -> int:
+    """Which touched surface holds a ball of next to no speed, alone or with another one; -1 if they do not hold it."""
+    for i in range(ball.touched):
+        if _carries_alone(ball, touches[w, i]):
+            return i
+    for i in range(ball.touched):
+        for j in range(i):
+            of_one, of_other = _shares(ball, touches[w, i], touches[w, j])
+            if of_one >= 0.0 and of_other >= 0.0:
+                return i if of_one > of_other else j
+    return -1
+
+
+@function
+def _carries_alone(ball: Record, touch: Record) -> bool:
+    """Whether a surface is level beneath the ball, which does not move away: its bounces there are summed instead."""
+    level = abs(ball.gx * touch.ny - ball.gy * touch.nx) <= ALIGNED * (abs(ball.gx) + abs(ball.gy))
+    beneath = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
+    return level and beneath and not touch.moves and closing_speed(ball, touch) >= -slow_speed(ball, touch)
+
+
+@function
+def _shares(ball: Record, one: Record, other: Record) -> tuple[float, float]:
+    """The forces (per mass, m/s^2) along two normals that together hold the ball; negative where there are none."""
+    turn = one.nx * other.ny - one.ny * other.nx
+    if one.moves or other.moves or abs(turn) <= ALIGNED:
+        return -1.0, -1.0
+    noise = ALIGNED * (abs(ball.gx) + abs(ball.gy))
+    of_one = (ball.gy * other.nx - ball.gx * other.ny) / turn
+    of_other = (ball.gx * one.ny - ball.gy * one.nx) / turn
+    return of_one + noise, of_other + noise
+
+
+@function
+def _slides_on(ball: Record, faces: Table, touches: Table, w: int, scene: int, i: int) -> bool:
+    """Let the ball slide along a touched wall, if it is pressed on it, does not leave it, and nothing is in the way."""
+    touch = touches[w, i]
+    slow = slow_speed(ball, touch)
+    # However little it is pressed: what is not constrained would sink in by and by.
+    pressed = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
+    if faces is None or touch.face < 0 or closing_speed(ball, touch) < -slow or not pressed:
+        return False
+    face = faces[scene, touch.face]
+    along = (ball.x - face.x) * face.ux + (ball.y - face.y) * face.uy
+    rate = ball.vx * face.ux + ball.vy * face.uy
+    pull = ball.gx * face.ux + ball.gy * face.uy
+    noise = PRESSING * (abs(ball.gx) + abs(ball.gy))
+    lean = rate if abs(rate) > slow else (pull if abs(pull) > noise else 0.0)
+    if (along >= face.length - ball.slack and lean > 0.0) or (along <= ball.slack and lean < 0.0):
+        return False
+    ax, ay = pull * face.ux, pull * face.uy
+    for j in range(ball.touched):
+        other = touches[w, j]
+        if closing_speed(ball, other) >= -slow_speed(ball, other) and ax * other.nx + ay * other.ny < -noise:
+            return False
+    ball.contact, ball.support = touch.face, touch.element
+    ball.vx, ball.vy, ball.ax, ball.ay = rate * face.ux, rate * face.uy, ax, ay
+    return True
+
+
+@function
+def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
+    """Let a ball that flies along a curve which it is pressed on leave it with the smallest rebound: one small hop."""
+    ball = state.balls[w, k]
+    best, index = 0.0, -1
+    for i in range(ball.touched):
+        touch = state.touches[w, i]
+        leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
+        if touch.bend != 0.0 and not leaving and press_of(ball, touch) > best:
+            best, index = press_of(ball, touch), i
+    if index < 0:
+        return
+    touch = state.touches[w, index]
+    extent = tables.scenes[state.worlds[w].scene].extent
+    hop = rolling_speed(ball, touch, best, extent) + closing_speed(ball, touch)
+    vx0, vy0 = ball.vx, ball.vy
+    ball.vx, ball.vy = vx0 + hop * touch.nx, vy0 + hop * touch.ny
+    count_bounce(state, w, k, touch, vx0, vy0, ledger)
+
+
+@function
+def _settle(state: State, tables: Tables, faces: Table, w: int, k: int, single: int) -> float:
+    """Sum the bounces still to come on a wall, if they rise above no tolerance; returns how long they take [s], or -1.
+
+    With hops of durations tau, b tau, b^2 tau ... they end after tau / (1 - b); meanwhile the ball is on the wall. With
+    f = 1 it slides as ever. With f < 1 it comes to stand; until then it is shown in uniform motion to where.
+    """
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head, touch = tables.scenes[scene], state.touches[w, single]
+    material = tables.elements[scene, touch.element]
+    press, rebound, b, f = press_of(ball, touch), -closing_speed(ball, touch), material.b, material.f
+    if faces is None or touch.face < 0 or head.rest_speed > 0.0 or not 0.0 < b < 1.0:
+        return -1.0
+    if press == 0.0 or not is_soft(rebound, press, head.extent):
+        return -1.0
+    face = faces[scene, touch.face]
+    hop = 2.0 * rebound / press
+    duration = hop / (1.0 - b)
+    speed = ball.vx * face.ux + ball.vy * face.uy
+    pull = ball.gx * face.ux + ball.gy * face.uy
+    if f < 1.0:
+        way = speed * hop / (1.0 - f * b)
+        way += pull * hop * hop * (1.0 + f * b) / (2.0 * (1.0 - f * b) * (1.0 - b * b))
+        speed, pull = way / duration, 0.0
+    ball.vx, ball.vy, ball.ax, ball.ay = speed * face.ux, speed * face.uy, pull * face.ux, pull * face.uy
+    ball.contact, ball.support, ball.settling = touch.face, touch.element, 1
+    return duration
+
+
+@function
+def _log_end(state: State, w: int, k: int, support: int, vx: float, vy: float, ledger: Table) -> None:
+    ball = state.balls[w, k]
+    nx, ny = 0.0, 0.0
+    for i in range(ball.touched):
+        touch = state.touches[w, i]
+        if touch.element == support:
+            nx, ny = touch.nx, touch.ny
+    log(ledger, state.worlds[w], ball, k, support, CONTACT_ENDS, nx, ny, vx, vy, 0.0, 0.0)

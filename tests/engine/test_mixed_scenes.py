@@ -1,0 +1,48 @@
+"""Whatever standing elements a closed scene mixes: no ball escapes, sinks into anything, or stops without a reason."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from conftest import soak_count
+from mixed_scenes import mixed_scene, start_in
+
+from bounce_env.engine.batch import Worlds
+from bounce_env.engine.layout import BUDGET, OK
+from bounce_env.engine.overlap import gaps
+
+SECONDS = 20.0
+EVENTS = 400_000
+SCENES = soak_count(200, 500)
+
+
+@pytest.mark.parametrize("point", [False, True], ids=["discs", "points"])
+def test_mixed_scenes(point: bool) -> None:
+    """Soak: 100 groups of 500 scenes of each kind, 10^5 together, 20 s each."""
+    counts: Counter[str] = Counter()
+    for group in range(soak_count(1, 100)):
+        rng = np.random.default_rng([group, point])
+        scenes, places, speeds = [], [], []
+        while len(scenes) < SCENES:
+            scene = mixed_scene(rng, 0.0 if point else float(rng.uniform(0.005, 0.1)))
+            start = start_in(rng, scene)
+            if start is not None:
+                scenes.append(scene)
+                places.append(start[0])
+                speeds.append(start[1])
+        worlds = Worlds(scenes, np.arange(SCENES))
+        worlds.reset(places, speeds)
+        worlds.advance(SECONDS, EVENTS)
+        balls, status = worlds.balls, worlds.status
+        assert np.isfinite(balls).all()
+        assert (np.abs(balls[:, :2] - 0.5) <= 0.5 + 1e-9).all()
+        for scene, ball in zip(scenes, balls.tolist(), strict=True):
+            assert min(gap for _, gap in gaps(scene, {}, ball[0], ball[1])) >= -1e-9, (scene, ball)
+        assert set(status) <= {OK, BUDGET}
+        before = worlds.state.worlds["time_hi"].copy()
+        worlds.advance(SECONDS, 1000)
+        # A ball that meets more than its budget allows meets it in due time: a thousand events take more than no time.
+        assert (worlds.state.worlds["time_hi"] - before > 1e-7).all()
+        counts.update({"ok": int((status == OK).sum()), "budget": int((status == BUDGET).sum())})
+    print(f"{'points' if point else 'discs'}: {dict(counts)}")  # noqa: T201
+    assert counts["budget"] <= 0.01 * counts["ok"]

@@ -224,6 +224,7 @@ def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     touch = state.touches[w, index]
     extent = tables.scenes[state.worlds[w].scene].extent
     hop = rolling_speed(ball, touch, best, extent) + closing_speed(ball, touch)
+    ball.rolling = touch.element
     vx0, vy0 = ball.vx, ball.vy
     ball.vx, ball.vy = vx0 + hop * touch.nx, vy0 + hop * touch.ny
     count_bounce(state, w, k, touch, vx0, vy0, ledger)

@@ -248,7 +248,7 @@ def place(state: State, tables: Tables, w: int, k: int, x: float, y: float, vx: 
     ball.x, ball.y, ball.vx, ball.vy = x, y, vx, vy
     ball.hi, ball.lo = world.time_hi, world.time_lo
     ball.status = OK
-    ball.contact, ball.support, ball.settling = FLYING, -1, 0
+    ball.contact, ball.support, ball.settling, ball.rolling = FLYING, -1, 0, -1
     ball.slack = touch_tolerance(head.extent, 0.0, 0.0, None, None, 0.0)
     take_sides(state, tables, w, k)
     accelerate(state, tables, w, k)

@@ -146,6 +146,8 @@ def _bounce_from(state: State, tables: Tables, w: int, k: int, i: int, closing: 
         rebound += material.kick
     else:
         kicked = False
+    if ball.rolling != touch.element:
+        ball.rolling = -1
     vx0, vy0 = ball.vx, ball.vy
     vx, vy = bounce(vx0, vy0, touch.nx, touch.ny, touch.ux, touch.uy, rebound, f)
     ball.vx, ball.vy, over = capped(vx, vy, touch.nx, touch.ny, touch.ux, touch.uy, head.max_speed)
@@ -165,8 +167,8 @@ def _softened(
     rolling = touch.bend != 0.0 and closing <= 1.5 * rolling_speed(ball, touch, press, head.extent)
     if closing < head.rest_speed or (rolling and head.rest_speed > 0.0):
         return 0.0, (1.0 if f > 0.0 else 0.0)
-    # Where nothing is lost bounces do not die away, but for those of the smallest hops there are.
-    lossless = material.b >= 1.0 and closing > 8.0 * soft_speed(press, head.extent)
+    # Where nothing is lost bounces do not die away: only of a ball that rolls are they the smallest there are.
+    lossless = material.b >= 1.0 and ball.rolling != touch.element
     if touch.bend == 0.0 or lossless:
         return rebound, f
     smallest = rolling_speed(ball, touch, press, head.extent)
@@ -175,7 +177,7 @@ def _softened(
         return rebound, f
     if is_soft(closing, press, head.extent):
         return 0.0, f
-    if abs(along_speed(ball, touch)) <= 2.0 * smallest:
+    if material.b < 1.0 and abs(along_speed(ball, touch)) <= 2.0 * smallest:
         # Slow on the curve: let the bounces die away, so that a ball between several surfaces comes to touch them.
         smallest = min(smallest, 0.5 * closing)
     return max(rebound, smallest), f

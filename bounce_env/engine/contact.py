@@ -59,6 +59,7 @@ def resolve(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None
             _log_end(state, w, k, support, vx0, vy0, ledger)
         if i >= 0 and changed:
             touch = state.touches[w, i]
+            ball.nx, ball.ny = touch.nx, touch.ny
             log(
                 ledger, state.worlds[w], ball, k, touch.element, CONTACT_BEGINS,
                 touch.nx, touch.ny, vx0, vy0, touch.ux, touch.uy,
@@ -261,10 +262,9 @@ def _settle(state: State, tables: Tables, faces: Table, w: int, k: int, single: 
 
 @function
 def _log_end(state: State, w: int, k: int, support: int, vx: float, vy: float, ledger: Table) -> None:
+    """The end of a contact changes no velocity: what does so has rows of its own."""
     ball = state.balls[w, k]
-    nx, ny = 0.0, 0.0
-    for i in range(ball.touched):
-        touch = state.touches[w, i]
-        if touch.element == support:
-            nx, ny = touch.nx, touch.ny
-    log(ledger, state.worlds[w], ball, k, support, CONTACT_ENDS, nx, ny, vx, vy, 0.0, 0.0)
+    new_vx, new_vy = ball.vx, ball.vy
+    ball.vx, ball.vy = vx, vy
+    log(ledger, state.worlds[w], ball, k, support, CONTACT_ENDS, ball.nx, ball.ny, vx, vy, 0.0, 0.0)
+    ball.vx, ball.vy = new_vx, new_vy

@@ -27,9 +27,11 @@ def _cross_line(state: State, tables: Tables, w: int, k: int, sensors: Table, si
         return
     ball = state.balls[w, k]
     sensor = sensors[state.worlds[w].scene, ball.sensor_index]
-    side = float(sides[w, k, ball.sensor_index])
     sides[w, k, ball.sensor_index] = -sides[w, k, ball.sensor_index]
-    _report(state, tables, w, k, sensor.element, sensor.drain, -side * sensor.uy, side * sensor.ux, ledger)
+    gx, gy = pull(tables.gravity, ball)
+    vx, vy = sped(ball.vx, gx, ball.sensor_after), sped(ball.vy, gy, ball.sensor_after)
+    facing = 1.0 if vy * sensor.ux - vx * sensor.uy < 0.0 else -1.0
+    _report(state, tables, w, k, sensor.element, sensor.drain, -facing * sensor.uy, facing * sensor.ux, ledger)
 
 
 @function

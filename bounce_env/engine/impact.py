@@ -208,6 +208,12 @@ def curved_circle_time(
         gap = distance - reach - away
         rate = (px * qx + py * qy) / distance
         if gap <= slack:
+            cross = (px * qy - py * qx) / distance
+            bend = cross * cross / distance + (px * gx + py * gy) / distance
+            if rate < 0.0 < bend and rate * rate <= 2.0 * bend * (gap + slack):
+                # It comes no deeper than the slack: a touch in passing. The search goes on where the gap opens again.
+                t -= 2.0 * rate / bend
+                continue
             if rate < -slow_on_circle(qx, qy, reach, slack):
                 # In a hop that hardly rises above the slack the speed still changes on the last bit of the way.
                 root = math.sqrt(max(rate * rate + 2.0 * bound * gap, 0.0))

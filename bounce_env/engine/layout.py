@@ -67,6 +67,7 @@ BALL = record(
     contact="i8",  # the face that the ball slides on, FLYING or HELD
     support="i8",  # the element that it is in contact with, -1 in free flight
     settling="i8",  # 1 while the last bounces before a contact are summed
+    nx="f8", ny="f8",  # normal of that contact, to the ball
     rolling="i8",  # the element with a curve that it was last set rolling on, otherwise -1
     slack="f8",  # [m] what counts as touching at that instant
     touched="i8",  # how many surfaces it touched when it was last resolved

@@ -6,6 +6,7 @@ from bounce_env.engine.arc import entry_time
 from bounce_env.engine.impact import facing_time, line_time
 from bounce_env.engine.jit import Feature, Record, Table, function
 from bounce_env.engine.layout import FIELD_EDGE, LINE, RING_ENTRY, State, Tables
+from bounce_env.engine.tolerances import ULP
 
 Crossing = tuple[float, int, int]  # duration [s] from the flight's start, kind and row of what is crossed
 
@@ -60,9 +61,11 @@ def _rings(
         return best
     for i in range(count):
         ring = rings[scene, i]
+        # A ball may enter a circle twice in one flight: what came before is no answer.
+        tie = _follows(after, RING_ENTRY, i, after, kind, index)
         t = entry_time(
             ball.x - ring.x, ball.y - ring.y, ball.vx, ball.vy, gx, gy, ring.radius,
-            sides[w, k, i] > 0, ball.slack, after if kind == RING_ENTRY and index == i else -1.0, ball.end_after,
+            sides[w, k, i] > 0, ball.slack, after - abs(after) * ULP if tie else after, ball.end_after,
         )  # fmt: skip
         if t < best[0] and _follows(t, RING_ENTRY, i, after, kind, index):
             best = (t, RING_ENTRY, i)

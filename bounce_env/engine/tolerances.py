@@ -1,5 +1,7 @@
 """Every tolerance of the engine, with its unit and what it decides. There is no time tolerance."""
 
+ULP = 2.0**-52  # (dimensionless) unit in the last place
+
 # Lengths: a gap no larger than ULPS_OF_LENGTH units in the last place of the lengths that went into it is a touch.
 # Evaluating p0 + (v0 + g t / 2) t and a distance costs about six roundings; the factor leaves room for two of them.
 ULPS_OF_LENGTH = 16.0 * 2.0**-52  # (dimensionless, times metres)

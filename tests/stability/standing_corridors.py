@@ -3,7 +3,7 @@
 from stability_case import ULP, Case, at, count, going
 from standing_drops import NEAR, G, R, floor
 
-from bounce_env.scene import Ball, Scene, Wall
+from bounce_env.scene import Ball, Bumper, Scene, Wall
 
 
 def _corridor(name: str, gap: float, vy: float, hits: int) -> Case:
@@ -91,5 +91,39 @@ CORRIDORS = [
         script=(2.0,),
         rows="(right bounce, left bounce, ){3}right bounce, left bounce",
         expect=(*at(0.0, 2.5 - 4.0, NEAR), *going(8.0, -4.0, 32 * ULP)),
+    ),
+    *(
+        Case(
+            name=f"falls along an upright wall past its end, f={f}",
+            why="touching is no hit, neither on the wall nor on its round end: free fall",
+            scene=Scene(
+                gravity=(0, -2), ball=Ball(radius=R, f=f), elements=(Wall((-1, 1), (-1, 3), name="wall"), floor(-3.0))
+            ),
+            position=(-1 + R, 2.0),
+            script=(2.0,),
+            rows="",
+            expect=(*at(-1 + R, -2.0, NEAR), *going(0.0, -4.0, 8 * ULP)),
+        )
+        for f in (1.0, 0.5)
+    ),
+    Case(
+        name="a peak that just touches a bumper from below",
+        why="the parabola and the circle touch in one point, where the ball stands still: nothing is closed on",
+        scene=Scene(gravity=(0, -2), ball=Ball(radius=R), elements=(Bumper((0, 0), 1, name="bumper"),)),
+        position=(0.0, -2 - R),
+        velocity=(0.0, 2.0),
+        script=(2.0,),
+        rows="",
+        expect=(*at(0.0, -2 - R, NEAR), *going(0.0, -2.0, NEAR)),
+    ),
+    Case(
+        name="a peak that just touches the side of a bumper in passing",
+        why="the path's highest point touches the bumper's lowest: nothing is closed on, and vx and vy stay",
+        scene=Scene(gravity=(0, -2), ball=Ball(radius=R, f=0.5), elements=(Bumper((0, 0), 1, name="bumper"),)),
+        position=(-3.0, -2 - R),
+        velocity=(3.0, 2.0),
+        script=(2.0,),
+        rows="",
+        expect=(*at(3.0, -2 - R, NEAR), *going(3.0, -2.0, NEAR)),
     ),
 ]

@@ -1,0 +1,154 @@
+"""When a ball may come into contact, what it then does, and how small bounces end: in a corner, on a curve, on a wall.
+
+Of the ledger checker: plain Python, no code of the engine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from ledger_law import Rules, Surface, is_friction, is_soft, pressing, rolling_speed, split
+from ledger_touch import Bearing, Vector
+
+ALIGNED = 1e-9  # by how much the normals that carry a ball may miss the direction of what they carry
+CORNER = 64.0  # times as high as a hop that is none: so much is none between several surfaces
+SWING, BALANCE = 1e-3, 1e-4  # of sqrt(pull rho): the speeds at which a ball rests in a hollow, and on top of a curve
+SLOW = 4e-14  # share of the speed below which nothing closes or leaves
+
+
+class Settling(NamedTuple):
+    """The last bounces on a wall: they end after `seconds`; until then the ball is shown at this velocity."""
+
+    seconds: float
+    vx: float
+    vy: float
+    slides: bool  # under the tangential acceleration as well
+
+
+def closing_on(bearing: Bearing, v: Vector) -> float:
+    return -((v[0] - bearing.ux) * bearing.nx + (v[1] - bearing.uy) * bearing.ny)
+
+
+def press_on(bearing: Bearing, v: Vector, a: Vector) -> float:
+    """Acceleration [m/s^2] with which a ball is pressed on a surface."""
+    along = (v[1] - bearing.uy) * bearing.nx - (v[0] - bearing.ux) * bearing.ny
+    return -(a[0] * bearing.nx + a[1] * bearing.ny) - bearing.curvature * along * along
+
+
+def slow(v: Vector) -> float:
+    return SLOW * (abs(v[0]) + abs(v[1]))
+
+
+def is_carried(a: Vector, bearings: Sequence[Bearing]) -> bool:
+    """Whether one or two of the touched normals can hold a ball that stands."""
+    noise = ALIGNED * (abs(a[0]) + abs(a[1]))
+    if noise == 0.0:
+        return False
+    standing = [b for b in bearings if b.ux == b.uy == 0.0]
+    for one in standing:
+        if abs(a[0] * one.ny - a[1] * one.nx) <= noise and a[0] * one.nx + a[1] * one.ny < 0.0:
+            return True
+        for other in standing:
+            turn = one.nx * other.ny - one.ny * other.nx
+            if abs(turn) <= ALIGNED:
+                continue
+            of_one, of_other = (a[1] * other.nx - a[0] * other.ny) / turn, (a[0] * one.ny - a[1] * one.nx) / turn
+            if of_one >= -noise and of_other >= -noise:
+                return True
+    return False
+
+
+def is_standing(v: Vector, a: Vector, rules: Rules) -> bool:
+    """Whether what moves so slowly is taken to stand."""
+    return v[0] ** 2 + v[1] ** 2 <= 2.0 * math.hypot(*a) * CORNER * rules.soft_hop * (1.0 + ALIGNED)
+
+
+def swings_out(bearing: Bearing, v: Vector, a: Vector, rules: Rules) -> bool:
+    """Whether a ball moves so slowly through the foot of a hollow, or over the top of a curve, that it rests."""
+    pull = math.hypot(*a)
+    if bearing.curvature == 0.0 or a[0] * bearing.nx + a[1] * bearing.ny >= 0.0:
+        return False
+    rate, across = v[1] * bearing.nx - v[0] * bearing.ny, a[0] * bearing.ny - a[1] * bearing.nx
+    speed = math.sqrt(rate**2 + across**2 / (abs(bearing.curvature) * pull))
+    natural = math.sqrt(pull / abs(bearing.curvature))
+    limit = BALANCE * natural if bearing.curvature > 0.0 else max(rules.rest_speed, SWING * natural)
+    return speed <= limit * (1.0 + ALIGNED)
+
+
+def is_over(bearings: Sequence[Bearing], v: Vector, a: Vector, rules: Rules, kicks: Sequence[float]) -> bool:
+    """Whether bounces in a corner are over: the fastest approach is as slow as a touch. `kicks`: above which speeds."""
+    if len(bearings) < 2:
+        return False
+    k = max(range(len(bearings)), key=lambda i: closing_on(bearings[i], v))
+    closing, press = closing_on(bearings[k], v), press_on(bearings[k], v, a)
+    return (
+        press > 0.0 and closing <= kicks[k] and (closing < rules.rest_speed or is_soft(rules, closing, CORNER * press))
+    )
+
+
+def projections(bearings: Sequence[Bearing], v: Vector) -> Iterator[Vector]:
+    """What may be left of a velocity in a corner: along one of the surfaces where the others allow it, else nothing."""
+    allowed = False
+    for one in bearings:
+        closing = closing_on(one, v)
+        if closing > 0.0:
+            left = (v[0] + closing * one.nx, v[1] + closing * one.ny)
+            if all(closing_on(other, left) <= slow(v) for other in bearings):
+                allowed = True
+                yield left
+    if not allowed:
+        fastest = max(bearings, key=lambda b: closing_on(b, v))
+        yield fastest.ux, fastest.uy
+
+
+def along(bearing: Bearing, v: Vector) -> Vector:
+    """The part of a velocity along a surface that stands."""
+    rate = v[0] * bearing.ny - v[1] * bearing.nx
+    return rate * bearing.ny, -rate * bearing.nx
+
+
+def after_contact(
+    bearing: Bearing, bearings: Sequence[Bearing], v: Vector, a: Vector, f: float, rules: Rules
+) -> Iterator[Vector]:
+    """The velocities that a ball may have in contact with a surface, if it comes to it with `v`."""
+    pressed = press_on(bearing, v, a) > 0.0
+    if bearing.ux != 0.0 or bearing.uy != 0.0:
+        return
+    rests = pressed and (is_friction(f, rules) or swings_out(bearing, v, a, rules))
+    if rests or (is_standing(v, a, rules) and is_carried(a, bearings)):
+        yield 0.0, 0.0
+    elif pressed and bearing.straight:
+        yield along(bearing, v)
+
+
+def hop(surface: Surface, rules: Rules, v: Vector) -> Vector | None:
+    """The velocity with which a ball leaves a curve that it moves along, pressed on it; None where there is no hop."""
+    closing, slid = split(surface, *v)
+    press = pressing(surface, slid)
+    if surface.curvature == 0.0 or press <= 0.0 or abs(closing) > slow(v) + slow((surface.ux, surface.uy)):
+        return None
+    more = rolling_speed(surface, rules, slid, press) + closing
+    return v[0] + more * surface.nx, v[1] + more * surface.ny
+
+
+def settling(surface: Surface, rules: Rules, v: Vector) -> Settling | None:
+    """The end of bounces on a wall after one that leaves the ball with velocity `v`; None where they go on.
+
+    Hops of durations tau, b tau, b^2 tau ...: anchors/numerics.md, check 2.
+    """
+    s = surface
+    closing, slid = split(s, *v)
+    press, rebound = pressing(s, slid), -closing
+    if s.curvature != 0.0 or rules.rest_speed > 0.0 or not 0.0 < s.b < 1.0 or press <= 0.0 or rebound <= 0.0:
+        return None
+    if not is_soft(rules, rebound, press):
+        return None
+    tau, b, f = 2.0 * rebound / press, s.b, s.f
+    seconds = tau / (1.0 - b)
+    if f < 1.0:
+        pull = s.ay * s.nx - s.ax * s.ny
+        way = slid * tau / (1.0 - f * b) + pull * tau**2 * (1.0 + f * b) / (2.0 * (1.0 - f * b) * (1.0 - b**2))
+        slid = way / seconds
+    return Settling(seconds, -slid * s.ny, slid * s.nx, f == 1.0)

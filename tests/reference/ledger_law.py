@@ -1,0 +1,142 @@
+"""What a bounce may do to the velocity: the tutorial's law, absorption, smallest rebound, kick, cap.
+
+Of the ledger checker: plain Python, no code of the engine. Where a number lies so close to a threshold that round-off
+decides, both outcomes are lawful.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+CLOSE = 1e-9  # share of the speed within which a comparison with a threshold may go either way
+HOP_ULPS = 16.0 * 2.0**-52  # of the scene's extent: a hop no higher than this is none
+ROLLING = 0.01  # of sqrt(press rho): the speed of the hops in which a ball rolls on a curve, at most
+
+
+class Surface(NamedTuple):
+    """What the ball strikes, and how it is pressed there."""
+
+    nx: float
+    ny: float
+    ux: float
+    uy: float
+    curvature: float  # [1/m] 0 straight, > 0 bulging towards the ball
+    ax: float  # acceleration of the ball
+    ay: float
+    b: float  # products of ball's and element's
+    f: float
+    kick: float
+    kick_threshold: float
+    rolls: bool  # whether the ball's last bounce was a hop on it
+
+
+class Rules(NamedTuple):
+    rest_speed: float
+    max_speed: float
+    soft_hop: float  # [m] what a hop may rise and still be no hop
+
+
+class Outcome(NamedTuple):
+    vx: float
+    vy: float
+    kicked: bool
+
+
+def split(s: Surface, vx: float, vy: float) -> tuple[float, float]:
+    """Closing speed and speed along the surface, both relative to it; along is positive to the left of the normal."""
+    wx, wy = vx - s.ux, vy - s.uy
+    return -(wx * s.nx + wy * s.ny), wy * s.nx - wx * s.ny
+
+
+def pressing(s: Surface, along: float) -> float:
+    """Acceleration [m/s^2] with which the ball is pressed on the surface; < 0 where it would lift off."""
+    return -(s.ax * s.nx + s.ay * s.ny) - s.curvature * along * along
+
+
+def outcomes(s: Surface, rules: Rules, vx: float, vy: float, may_kick: bool, must_not: bool) -> Iterator[Outcome]:
+    """All velocities that the bounce may leave. `may_kick`, `must_not`: as the cooldown has it; both if it is close."""
+    closing, along = split(s, vx, vy)
+    near = CLOSE * (abs(closing) + abs(along))
+    choices = []
+    if s.kick > 0.0 and may_kick and closing > s.kick_threshold - near:
+        choices.append(s.kick)
+    if s.kick == 0.0 or must_not or closing <= s.kick_threshold + near:
+        choices.append(0.0)
+    for away, slid in _without_kick(s, rules, closing, along, near):
+        for kick in choices:
+            yield _capped(s, rules, away + kick, slid, kick > 0.0)
+
+
+def _without_kick(s: Surface, rules: Rules, closing: float, along: float, near: float) -> Iterator[tuple[float, float]]:
+    """Speeds away from the surface and along it."""
+    press = pressing(s, along)
+    scale = CLOSE * (math.hypot(s.ax, s.ay) + abs(s.curvature) * along * along)
+    law = (s.b * closing, s.f * along)
+    if press <= scale:
+        yield law
+    if press < -scale:
+        return
+    press = max(press, 0.0)
+    absorbed = rules.rest_speed
+    if s.curvature != 0.0 and rules.rest_speed > 0.0:
+        absorbed = max(absorbed, 1.5 * rolling_speed(s, rules, along, press))
+    if closing <= absorbed + near and absorbed > 0.0:
+        yield 0.0, along if s.f > 0.0 else 0.0
+    if closing < absorbed - near:
+        return
+    if s.curvature == 0.0 or (s.b >= 1.0 and not s.rolls):  # where nothing is lost bounces do not die away
+        yield law
+    else:
+        for away in _off_curve(s, rules, closing, along, near, press):
+            yield away, s.f * along
+
+
+def is_friction(f: float, rules: Rules) -> bool:
+    """Whether a surface that a ball is pressed on holds it by friction."""
+    return f == 0.0 or (f < 1.0 and rules.rest_speed == 0.0)
+
+
+def rolling_speed(s: Surface, rules: Rules, along: float, press: float) -> float:
+    """Speed [m/s] of the hops in which a ball rolls on a curve that it is pressed on, at most."""
+    return min(
+        ROLLING * math.sqrt(press / abs(s.curvature)),
+        max(0.5 * abs(along), 4.0 * math.sqrt(2.0 * press * rules.soft_hop)),
+    )
+
+
+def _off_curve(s: Surface, rules: Rules, closing: float, along: float, near: float, press: float) -> Iterator[float]:
+    """Speeds at which the ball may leave a curve that it is pressed on: small ones grow to the hops of rolling."""
+    least, away = rolling_speed(s, rules, along, press), s.b * closing
+    holds = away == 0.0 and is_friction(s.f, rules)
+    if holds or away >= least - near:
+        yield away
+    if not holds and away < least + near:
+        if is_soft(rules, closing, press):
+            yield 0.0
+        if abs(along) >= 2.0 * least - near:
+            yield max(away, least)
+        if abs(along) <= 2.0 * least + near:  # slow along the curve, the bounces die away
+            yield max(away, min(least, 0.5 * closing))
+
+
+def is_soft(rules: Rules, closing: float, press: float) -> bool:
+    """Whether a hop at this speed would not rise above what counts as touching; True also where it is close."""
+    return closing * closing <= 2.0 * press * rules.soft_hop * (1.0 + CLOSE)
+
+
+def _capped(s: Surface, rules: Rules, away: float, along: float, kicked: bool) -> Outcome:
+    """Back from the surface's frame to the world's, at no more than the greatest speed but never closing."""
+    vx, vy = s.ux + away * s.nx - along * s.ny, s.uy + away * s.ny + along * s.nx
+    speed = math.hypot(vx, vy)
+    if speed <= rules.max_speed:
+        return Outcome(vx, vy, kicked)
+    share = rules.max_speed / speed
+    if (share * vx - s.ux) * s.nx + (share * vy - s.uy) * s.ny >= 0.0:
+        return Outcome(share * vx, share * vy, kicked)
+    normal = vx * s.nx + vy * s.ny
+    tangent = vy * s.nx - vx * s.ny
+    normal = min(normal, rules.max_speed)
+    tangent = math.copysign(math.sqrt(rules.max_speed**2 - normal**2), tangent)
+    return Outcome(normal * s.nx - tangent * s.ny, normal * s.ny + tangent * s.nx, kicked)

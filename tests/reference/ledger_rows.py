@@ -1,0 +1,194 @@
+"""The rows of a ledger one by one: bounces, contacts, crossings; what each leaves is what the next motion starts from.
+
+Of the ledger checker: plain Python and numpy, no code of the engine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from ledger_contact import Settling, after_contact, closing_on, hop, press_on, projections, settling
+from ledger_known import CONTACT_BEGINS, EXACT, TOLERANCE, Known, Row, Way, apart
+from ledger_law import Surface, outcomes, split
+from ledger_sensors import Report, curve_of
+from ledger_shapes import direction
+from ledger_touch import ULP, Bearing, Own
+from ledger_walk import Bearer, Mode, State
+
+from bounce_env.scene import Sensor, Wall
+
+
+class RowChecks(Known):
+    """The checks of rows; what is wrong goes to `problems`."""
+
+    # ---- bounces
+
+    def bounce(self, index: int, row: Row) -> None:
+        self.remember(row)
+        own = self.stands_on(index, row)
+        if self.until < math.inf:  # the contact to which it settled never began
+            self.until, self.walk.bearer = math.inf, None
+        self.goes_on(row)
+        if own is None:
+            return
+        scale = self.blur(row)
+        closing, _ = split(self.surface(row, 0.0), *row.before)
+        rival = self.touches.rival(index)
+        if rival.which != row.element and rival.faster > scale:
+            self.say(index, f"elements[{rival.which}] is closed on faster, by {rival.faster:.3g} m/s")
+        if rival.first < row.element:
+            self.say(index, f"elements[{rival.first}] is closed on as fast, and comes first")
+        self.closes_no_more(index, row)
+        if closing <= scale:
+            hops = [hop(self.surface(row, curvature), self.rules, row.before) for curvature in own.curvatures]
+            if any(v is not None and apart(v, row.after) <= scale for v in hops):
+                self.rolls_on = row.element
+                return
+            if closing <= 0.0:
+                words = f"at {closing:.3g} m/s the ball does not close on elements[{row.element}]"
+                self.say(index, f"{words}, nor is it a hop to one of {hops}")
+                return
+        self.bounces_by_law(index, row, own, scale)
+
+    def bounces_by_law(self, index: int, row: Row, own: Own, scale: float) -> None:
+        """The velocity after must be what the law makes of the one before, or what a corner leaves of it."""
+        if self.rolls_on != row.element:
+            self.rolls_on = -1
+        lawful = []
+        for curvature in own.curvatures:
+            surface = self.surface(row, curvature)
+            lawful = list(self.lawful(row, surface))
+            met = [kicked for v, kicked in lawful if apart(v, row.after) <= scale]
+            if met and met[0]:
+                self.kicked[row.element] = row.time
+            elif met and self.walk.bearer is None and (way := self.settles(row, surface)) is not None:
+                self.ways.insert(0, way)
+            if met:
+                return
+        ends = list(self.ends_of_corner(index, row, self.bearings(row)))
+        if all(apart(v, row.after) > scale for v in ends):
+            self.say(index, f"the bounce leaves one of {[v for v, _ in lawful] + ends}, not {row.after}")
+
+    def lawful(self, row: Row, surface: Surface) -> Iterator[tuple[tuple[float, float], bool]]:
+        """The velocities that the law allows, and whether each took a kick."""
+        cooldown = self.scene.elements[row.element].cooldown
+        since = row.time - self.kicked.get(row.element, -math.inf)
+        close = 4.0 * ULP * row.time
+        for outcome in outcomes(surface, self.rules, *row.before, since >= cooldown - close, since < cooldown + close):
+            yield (outcome.vx, outcome.vy), outcome.kicked
+
+    def ends_of_corner(self, index: int, row: Row, bearings: Sequence[Bearing]) -> Iterator[tuple[float, float]]:
+        """What is left of the velocity where the bounces in a corner are over."""
+        if not self.is_over(index, bearings):
+            return
+        a = self.walk.acceleration
+        for left in projections(bearings, row.before):
+            yield left
+            for b in bearings:
+                if self.walk.bearer is not None and b.element == self.walk.bearer.element:
+                    f = self.scene.ball.f * self.scene.elements[b.element].f
+                    yield from after_contact(b, bearings, left, a, f, self.rules)
+
+    def settles(self, row: Row, surface: Surface) -> Way | None:
+        """The motion along a wall that stands for the bounces still to come, where they are too small to tell."""
+        end: Settling | None = settling(surface, self.rules, row.after)
+        if end is None:
+            return None
+        bearer = Bearer(row.element, row.nx, row.ny)
+        state = State(row.time, row.x, row.y, end.vx, end.vy)
+        return Way(state, Mode.SLIDES if end.slides else Mode.SETTLES, bearer, row.time + end.seconds)
+
+    # ---- contacts
+
+    def contact_begins(self, index: int, row: Row) -> None:
+        self.remember(row)
+        own = self.stands_on(index, row)
+        settled = self.until < math.inf
+        if settled and self.walk.bearer is not None and self.walk.bearer.element == row.element:
+            early = self.until - row.time
+            undisturbed = row.time not in self.commanded and not self.walk.pull.fields and not self.paddles
+            if abs(early) > EXACT * self.until and undisturbed:
+                self.say(index, f"the bounces end at {self.until!r}, not at {row.time!r}")
+        elif self.walk.bearer is not None and not settled:
+            self.say(index, f"the ball is in contact with elements[{self.walk.bearer.element}]")
+        self.until = math.inf
+        state = State(row.time, row.x, row.y, *row.after)
+        self.ways = [Way(state, Mode.FLIES, None)]
+        if own is None:
+            return
+        bearer = Bearer(row.element, row.nx, row.ny)
+        self.ways = [Way(state, self.mode_on(bearer, state), bearer)]
+        self.closes_no_more(index, row)
+        bearings = self.bearings(row)
+        a, scale = self.walk.acceleration, self.blur(row)
+        closing = max((closing_on(b, row.before) for b in bearings), default=0.0)
+        bases = [row.before] if closing <= scale else []
+        if closing > 0.0 and self.is_over(index, bearings):
+            bases += projections(bearings, row.before)
+        lawful = []
+        for b in bearings:
+            if b.element == row.element and apart((b.nx, b.ny), (row.nx, row.ny)) <= TOLERANCE:
+                f = self.scene.ball.f * self.scene.elements[b.element].f
+                lawful += [v for base in bases for v in after_contact(b, bearings, base, a, f, self.rules)]
+        if all(apart(v, row.after) > scale for v in lawful):
+            self.say(index, f"the contact can leave one of {lawful}, not {row.after}")
+
+    def contact_ends(self, index: int, row: Row) -> None:
+        self.remember(row)
+        bearer = self.walk.bearer
+        self.ways = [Way(State(row.time, row.x, row.y, *row.after), Mode.FLIES, None)]
+        self.must_end = False
+        if bearer is None or bearer.element != row.element or self.until < math.inf:
+            self.say(index, f"the ball is not in contact with elements[{row.element}]")
+            return
+        self.stands_on(index, row)
+        self.closes_no_more(index, row)
+        if apart(row.before, row.after) > self.blur(row):
+            self.say(index, f"the end of a contact changes no velocity, but here {row.before} to {row.after}")
+        if not self.has_reason_to_end(index, row, bearer):
+            self.say(index, f"nothing ends the contact with elements[{row.element}]")
+
+    def has_reason_to_end(self, index: int, row: Row, bearer: Bearer) -> bool:
+        """Taken off or pushed off, not pressed any more, switched off, past the wall's end, taken over, or rolling."""
+        vx, vy = row.after
+        leaving = vx * bearer.nx + vy * bearer.ny
+        off = not self.walk.enabled[row.element] or (row.time, False) in self.switches.get(row.element, [])
+        if leaving > self.blur(row) or off:
+            return True
+        takes_over = self.rows[index + 1 : index + 2]
+        if any(r.kind == CONTACT_BEGINS and r.time == row.time for r in takes_over):
+            return True
+        wall = self.scene.elements[row.element]
+        ax, ay = self.walk.acceleration
+        flat = Bearing(row.element, bearer.nx, bearer.ny, 0.0, 0.0, 0.0, True)
+        if press_on(flat, row.after, (ax, ay)) <= EXACT * math.hypot(ax, ay):
+            return True
+        if not isinstance(wall, Wall):
+            return math.hypot(vx, vy) > self.blur(row)
+        ex, ey, length = direction(wall.start, wall.end)
+        at = (row.x - wall.start[0]) * ex + (row.y - wall.start[1]) * ey
+        rate = vx * ex + vy * ey or ax * ex + ay * ey
+        allowed = TOLERANCE * self.size
+        return (at >= length - allowed and rate > 0.0) or (at <= allowed and rate < 0.0)
+
+    # ---- sensors
+
+    def crossing(self, index: int, row: Row) -> None:
+        sensor = self.scene.elements[row.element]
+        self.ways = [Way(State(row.time, row.x, row.y, *row.after), self.walk.mode, self.walk.bearer, self.until)]
+        if not isinstance(sensor, Sensor):
+            self.say(index, f"elements[{row.element}] is no sensor")
+            return
+        curve = curve_of(sensor)
+        allowed = TOLERANCE * self.size
+        if abs(curve.height(row.x, row.y)) > allowed or curve.margin(row.x, row.y) < -allowed:
+            self.say(index, f"the ball's centre is not on elements[{row.element}]")
+        nx, ny = curve.normal(row.x, row.y)
+        side = -1.0 if nx * row.vx0 + ny * row.vy0 > 0.0 and sensor.segment is not None else 1.0
+        if apart((side * nx, side * ny), (row.nx, row.ny)) > EXACT:
+            self.say(index, f"the normal is {(side * nx, side * ny)}, not {(row.nx, row.ny)}")
+        if (row.after, row.ux, row.uy) != (row.before, 0.0, 0.0):
+            self.say(index, "a sensor changes no velocity and has none")
+        self.reports.setdefault(row.element, []).append(Report(index, row.time, (row.nx, row.ny)))
+        self.walk.out = sensor.drain

@@ -1,0 +1,185 @@
+"""One ball's motion from event to event, carried on in closed form from what the ledger says of the last event.
+
+Of the ledger checker: plain Python, no code of the engine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from enum import Enum, auto
+from typing import NamedTuple
+
+from ledger_paths import Piece, Pull
+
+from bounce_env.scene import Field, Scene
+
+Value = float | bool | tuple[float, float]
+Command = tuple[float, str, Value]
+"""(time since reset [s], name, value): speed of a paddle [m/s], True or False for `enable`, (dvx, dvy) for a push."""
+
+LONGEST = 10_000  # pieces of one flight: no ball passes more borders of fields than that between two events
+PRESSING = 1e-12  # share of the acceleration below which a wall is not pressed
+
+
+class State(NamedTuple):
+    time: float
+    x: float
+    y: float
+    vx: float
+    vy: float
+
+
+class Mode(Enum):
+    FLIES = auto()
+    SLIDES = auto()  # along a wall, under what the wall leaves of the acceleration
+    RESTS = auto()
+    SETTLES = auto()  # is shown in uniform motion along a wall while its last small bounces go on
+
+
+class Bearer(NamedTuple):
+    """The element that a ball is in contact with, and its unit normal there."""
+
+    element: int
+    nx: float
+    ny: float
+
+
+class Mark(NamedTuple):
+    """Enough of a walk to go back to."""
+
+    state: State
+    pieces: int
+    waiting: tuple[Command, ...]
+    enabled: tuple[bool, ...]
+
+
+class Walk:
+    """Where the ball is, and the pieces of the path that led there."""
+
+    def __init__(self, scene: Scene, start: State, commands: Sequence[Command], cuts: Sequence[float]) -> None:
+        """`cuts`: times at which a piece must end, ascending."""
+        self.state = start
+        self.pieces: list[Piece] = []
+        self.mode = Mode.FLIES
+        self.bearer: Bearer | None = None
+        self.out = False
+        self.waiting = tuple(sorted(commands, key=lambda command: command[0]))
+        self.unpressed = False  # whether it slid where nothing pressed it on the wall, since `place`
+        self._cuts = cuts
+        self._scene = scene
+        self._names = {e.name: i for i, e in enumerate(scene.elements) if e.name}
+        self.enabled = (True,) * len(scene.elements)
+        self._near = 1e-13 * max(1e-9, *(abs(side) for side in scene.bounds))
+        self._take_fields()
+
+    def _take_fields(self) -> None:
+        on = [e for e, on in zip(self._scene.elements, self.enabled, strict=True) if on and isinstance(e, Field)]
+        self.pull = Pull(self._scene.gravity, on)
+
+    def place(self, state: State, mode: Mode, bearer: Bearer | None) -> None:
+        """Go on from here."""
+        self.state, self.mode, self.bearer = state, mode, bearer
+        self.unpressed = False
+
+    def mark(self) -> Mark:
+        return Mark(self.state, len(self.pieces), self.waiting, self.enabled)
+
+    def back(self, mark: Mark) -> None:
+        self.state, self.waiting, self.enabled = mark.state, mark.waiting, mark.enabled
+        del self.pieces[mark.pieces :]
+        self._take_fields()
+
+    @property
+    def acceleration(self) -> tuple[float, float]:
+        """What pulls at the ball where it is [m/s^2], whatever bears it."""
+        if not self.pull.fields:
+            return self.pull.gravity
+        s = self.state
+        return self._first_stretch(s, 1.0, *self.pull.at(s.x, s.y))[1]
+
+    def carry(self, until: float, row: int) -> None:
+        """Move on to a time; commands at that very time have yet to act."""
+        while self.waiting and self.waiting[0][0] < until:
+            self._move(self.waiting[0][0], row)
+            self.act()
+        self._move(until, row)
+
+    def act(self) -> bool:
+        """Let all commands of this instant act; False if there is none."""
+        now = self.state.time
+        due = [command for command in self.waiting if command[0] <= now]
+        if not due:
+            return False
+        self.waiting = self.waiting[len(due) :]
+        # Drag acts at the commands of parts.
+        share = self._scene.drag if any(type(value) is float for _, _, value in due) else 1.0
+        vx, vy = share * self.state.vx, share * self.state.vy
+        enabled = list(self.enabled)
+        for _, name, value in due:
+            if isinstance(value, bool):
+                enabled[self._names[name]] = value
+            elif isinstance(value, tuple):
+                vx, vy = vx + value[0], vy + value[1]
+        self.enabled = tuple(enabled)
+        self._take_fields()
+        self.state = self.state._replace(vx=vx, vy=vy)
+        return True
+
+    def _move(self, until: float, row: int) -> None:
+        for cut in self._cuts:
+            if self.state.time < cut < until:
+                self._go(cut, row)
+        self._go(until, row)
+
+    def _go(self, until: float, row: int) -> None:
+        """In pieces of constant acceleration, from border to border of the fields."""
+        if self.out:
+            self.state = self.state._replace(time=until)
+            return
+        element = -1 if self.bearer is None else self.bearer.element
+        for _ in range(LONGEST):
+            s = self.state
+            seconds, (ax, ay) = until - s.time, self.pull.gravity
+            if self.pull.fields:
+                seconds, (ax, ay) = self._first_stretch(s, seconds, *self.pull.at(s.x, s.y))
+            last = seconds >= until - s.time
+            if self.bearer is not None and self.mode is not Mode.RESTS and seconds > 0.0:
+                into = ax * self.bearer.nx + ay * self.bearer.ny
+                self.unpressed |= into >= -PRESSING * math.hypot(ax, ay)
+            if self.mode is Mode.RESTS:
+                s = s._replace(vx=0.0, vy=0.0)
+            piece = Piece(s.time, seconds, s.x, s.y, s.vx, s.vy, *self._borne(ax, ay), element, row)
+            self.pieces.append(piece)
+            self.state = State(until if last else s.time + seconds, *piece.at(seconds))
+            if last:
+                return
+        raise ValueError("a flight passes more borders of fields than it can")
+
+    def _first_stretch(self, s: State, seconds: float, ax: float, ay: float) -> tuple[float, tuple[float, float]]:
+        """For how long, at most `seconds`, no border of a field is passed, and the acceleration meanwhile."""
+        best = (seconds, (ax, ay))
+        for _ in range(4):  # on a border the place does not tell: take the acceleration that the path then meets
+            piece = Piece(s.time, seconds, s.x, s.y, s.vx, s.vy, *self._borne(ax, ay), -1, -1)
+            borders = [t for t in self.pull.borders(piece) if self._leaves(piece, t)]
+            middles = [0.5 * (a + b) for a, b in zip([0.0, *borders], [*borders, seconds], strict=True)]
+            met = [self.pull.at(*piece.at(t)[:2]) for t in middles]
+            change = next((k for k in range(1, len(met)) if met[k] != met[0]), None)
+            best = (seconds if change is None else borders[change - 1], met[0])
+            if met[0] == (ax, ay):
+                return best
+            ax, ay = met[0]
+        return best
+
+    def _leaves(self, piece: Piece, t: float) -> bool:
+        """Whether the ball has gone anywhere, if only there and back, so that a border is not that of the start."""
+        return (abs(piece.vx) + abs(piece.vy) + (abs(piece.ax) + abs(piece.ay)) * t) * t > self._near
+
+    def _borne(self, ax: float, ay: float) -> tuple[float, float]:
+        """The acceleration that is left to the ball."""
+        if self.mode is Mode.FLIES or self.bearer is None:
+            return ax, ay
+        if self.mode is not Mode.SLIDES:
+            return 0.0, 0.0
+        into = ax * self.bearer.nx + ay * self.bearer.ny
+        return ax - into * self.bearer.nx, ay - into * self.bearer.ny

@@ -6,7 +6,7 @@ from hypothesis import settings
 
 SOAK = os.environ.get("BOUNCE_SOAK") == "1"
 
-# Not yet in `make test`: the stability suite still shows a fault of an elastic ball that rolls on a curve, and the ledger
+# Not yet in `make test`: the stability suite still shows a fault of an elastic ball rolling on a curve, and the ledger
 # checker some of scenes that mix everything. They run by name and in a soak, and belong here once those are mended.
 collect_ignore = [] if SOAK else ["stability", "regressions", "reference/test_ledger_checker.py"]
 

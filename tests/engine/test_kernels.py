@@ -41,8 +41,8 @@ def test_second_process_compiles_nothing_and_an_edited_helper_is_noticed(tmp_pat
     assert run_in(tmp_path) == ["1", "0", "1.0"]
     law = tmp_path / "bounce_env" / "engine" / "law.py"
     source = law.read_text()
-    assert source.count("away = -b * normal") == 1
-    law.write_text(source.replace("away = -b * normal", "away = -0.5 * b * normal"))
+    assert source.count("uy + (rebound * ny") == 1
+    law.write_text(source.replace("uy + (rebound * ny", "uy + (0.5 * rebound * ny"))
     indices = list(tmp_path.rglob("*.nbi"))
     assert indices
     for index in indices:

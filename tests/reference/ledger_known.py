@@ -168,7 +168,7 @@ class Known:
             kicks.append(element.kick_threshold if element.kick > 0.0 else math.inf)
         if is_over(bearings, row.before, self.walk.acceleration, self.rules, kicks):
             return True
-        first = max(0, index - BOUNCES_AT_ONE_INSTANT)
+        first = max(0, index - BOUNCES_AT_ONE_INSTANT - 2)  # the end of a contact may come between
         return sum(r.kind == BOUNCE and r.time == row.time for r in self.rows[first:index]) >= BOUNCES_AT_ONE_INSTANT
 
     def goes_on(self, row: Row) -> None:

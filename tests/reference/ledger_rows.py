@@ -37,7 +37,7 @@ class RowChecks(Known):
         rival = self.touches.rival(index)
         if rival.which != row.element and rival.faster > scale:
             self.say(index, f"elements[{rival.which}] is closed on faster, by {rival.faster:.3g} m/s")
-        if rival.first < row.element:
+        if rival.first < row.element and closing > scale:
             self.say(index, f"elements[{rival.first}] is closed on as fast, and comes first")
         self.closes_no_more(index, row)
         if closing <= scale:

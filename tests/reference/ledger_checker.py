@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from ledger_known import BOUNCE, CONTACT_ENDS, CROSSING, EXACT, PART_STOPS, TOLERANCE, Row, apart
+from ledger_known import BOUNCE, CONTACT_ENDS, CROSSING, EXACT, PART_STOPS, STANDING, TOLERANCE, Row, apart
 from ledger_rows import RowChecks
 from ledger_sensors import Whole
 from ledger_touch import ULP, Ledger
@@ -141,7 +141,8 @@ class _Check(RowChecks):
         length = TOLERANCE * self.size + 32.0 * ULP * (self.extent + speed * seconds) + speed * lost
         if apart((derived.x, derived.y), (seen.x, seen.y)) > length:
             return f"the ball comes to {(derived.x, derived.y)}, not to {(seen.x, seen.y)}"
-        if apart((derived.vx, derived.vy), (seen.vx, seen.vy)) > TOLERANCE * speed + math.hypot(*pull) * lost:
+        faster = STANDING + TOLERANCE * speed + math.hypot(*pull) * lost
+        if apart((derived.vx, derived.vy), (seen.vx, seen.vy)) > faster:
             return f"the ball comes with {(derived.vx, derived.vy)}, not with {(seen.vx, seen.vy)}"
         return ""
 

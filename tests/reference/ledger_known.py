@@ -20,11 +20,12 @@ from ledger_shapes import Shapes
 from ledger_touch import ULP, Bearing, Ledger, Own, Touches
 from ledger_walk import Bearer, Command, Mode, State, Walk
 
-from bounce_env.scene import Field, Paddle, Scene, Sensor
+from bounce_env.scene import Arc, Field, Paddle, Scene, Sensor
 
 BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS = range(5)
 TOLERANCE = 1e-9  # of lengths relative to the scene's size, of speeds relative to those that enter
 EXACT = 1e-12  # what one formula may lose
+STANDING = 1e-290  # [m/s] slower than this is not at all
 BOUNCES_AT_ONE_INSTANT = 32  # after so many the ball is stopped by what it touches
 
 
@@ -74,7 +75,9 @@ class Known:
         self.rows = [Row(*values) for values in ledger.tolist()]
         self.problems: list[str] = []
         x0, y0, x1, y1 = scene.bounds
-        largest = max(abs(x0), abs(y0), abs(x1), abs(y1)) + scene.ball.radius
+        # An arc's places are known from its centre, however far that is from what it occupies.
+        far = [max(map(abs, e.center)) + e.radius for e in scene.elements if isinstance(e, Arc)]
+        largest = max(abs(x0), abs(y0), abs(x1), abs(y1), *far) + scene.ball.radius
         self.size = max(x1 - x0, y1 - y0) or 1.0
         self.extent = math.ldexp(1.0, math.frexp(largest)[1])
         names = {element.name: index for index, element in enumerate(scene.elements) if element.name}
@@ -132,7 +135,7 @@ class Known:
 
     def blur(self, row: Row) -> float:
         """Speeds [m/s] smaller than this are what is left of larger ones at the same instant, or of its rounding."""
-        return EXACT * self.fastest + 4.0 * ULP * row.time * math.hypot(*self.walk.acceleration)
+        return STANDING + EXACT * self.fastest + 4.0 * ULP * row.time * math.hypot(*self.walk.acceleration)
 
     def remember(self, row: Row) -> None:
         """Note what later rows at this instant, or at this place, go by."""

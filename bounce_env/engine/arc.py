@@ -7,7 +7,7 @@ arc's span; the others go through its opening.
 import math
 from typing import Any
 
-from bounce_env.engine.flight import moved, slow_on_circle, sped
+from bounce_env.engine.flight import grazes, moved, slow_on_circle, sped
 from bounce_env.engine.jit import Feature, Record, function
 from bounce_env.engine.layout import CLOSED, MINOR
 from bounce_env.engine.quartic import distance_polynomial, monotone_borders, root_between, value, without_root_at_zero
@@ -95,7 +95,8 @@ def crossing_time(
     approach = sense * (x * vx + y * vy)
     slow = slow_on_circle(vx, vy, reach, slack) * distance
     if touching and armed and approach > slow and after < 0.0 and in_span(arc, x, y, slack):
-        return max(gap, 0.0) * distance / approach
+        wait = _until_nearest(sense, x, y, vx, vy, ax, ay, slack)
+        return wait if wait > 0.0 else max(gap, 0.0) * distance / approach
     still = touching and abs(approach) <= slow
     if still and armed and after < 0.0 and _sinks(sense, x, y, vx, vy, ax, ay) and in_span(arc, x, y, slack):
         return 0.0
@@ -104,6 +105,31 @@ def crossing_time(
     if abs(ax) + abs(ay) < WEIGHTLESS:
         return _straight(arc, reach, sense, x, y, vx, vy, touching, still, slack, after, horizon)
     return _curved(arc, reach, sense, x, y, vx, vy, ax, ay, touching, still, slack, after, horizon)
+
+
+@function
+def _until_nearest(
+    sense: float, x: float, y: float, vx: float, vy: float, ax: Feature, ay: Feature, slack: float
+) -> float:
+    """How long [s] until a point that touches a circle is nearest, if it does so in passing (see `grazes`); else 0."""
+    distance = math.sqrt(x * x + y * y)
+    closing = sense * (x * vx + y * vy) / distance
+    cross = (x * vy - y * vx) / distance
+    opening = -sense * cross * cross / distance
+    if ax is not None:
+        opening -= sense * (x * ax + y * ay) / distance
+    if closing > 0.0 and opening > 0.0 and grazes(closing * closing, opening, slack):
+        return closing / opening
+    return 0.0
+
+
+@function
+def _touches_at(
+    arc: Any, reach: float, x: float, y: float, vx: float, vy: float, ax: float, ay: float, t: float, slack: float
+) -> bool:
+    """Whether a ball touches after `t` seconds, beside the arc."""
+    px, py = moved(x, vx, ax, t), moved(y, vy, ay, t)
+    return abs(math.sqrt(px * px + py * py) - reach) <= slack and in_span(arc, px, py, slack)
 
 
 @function
@@ -139,6 +165,7 @@ def _straight(
         t = rest / (root - half) if half < 0.0 else -(root + half) / square
     if touching and t * square <= root:  # the root at the start, of which the touch has been told
         return math.inf
+    t += _until_nearest(sense, x + vx * t, y + vy * t, vx, vy, None, None, slack)
     if t < 0.0 or t <= after or t > horizon or not in_span(arc, x + vx * t, y + vy * t, slack):
         return math.inf
     return t
@@ -159,14 +186,20 @@ def _curved(
     for i in range(4):
         start, end = borders[i], borders[i + 1]
         if not (sense * value(c, start) < 0.0 <= sense * value(c, end)):
+            turns = sense < 0.0 and start < end < horizon and end > after
+            if turns and _touches_at(arc, reach, x, y, vx, vy, ax, ay, end, slack):
+                return end
             continue
         t = root_between(c, start, end)
-        # The polynomial knows the gap through its square only; a step on the distance itself mends the last digits.
-        px, py = moved(x, vx, ax, t), moved(y, vy, ay, t)
+        px, py, qx, qy = moved(x, vx, ax, t), moved(y, vy, ay, t), sped(vx, ax, t), sped(vy, ay, t)
         distance = math.sqrt(px * px + py * py)
-        rate = (px * sped(vx, ax, t) + py * sped(vy, ay, t)) / distance
-        if sense * rate > 0.0:
-            t = min(max(t - (distance - reach) / rate, 0.0), horizon)
+        rate = (px * qx + py * qy) / distance
+        wait = _until_nearest(sense, px, py, qx, qy, ax, ay, slack)
+        if wait > 0.0:
+            t += wait
+        elif sense * rate > 0.0:
+            # The polynomial knows the gap through its square only; a step on the distance itself mends the last digits.
+            t = min(max(t - (distance - reach) / rate, start), end)
         if t > after and in_span(arc, moved(x, vx, ax, t), moved(y, vy, ay, t), slack):
             return t
     return math.inf

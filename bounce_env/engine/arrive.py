@@ -5,10 +5,11 @@ Sides matter to a ball of no radius, which can be on a wall, and to what is cros
 
 import math
 
+from bounce_env.engine.impact import leaves_end
 from bounce_env.engine.jit import Record, Table, function
-from bounce_env.engine.layout import NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE, State, Tables
+from bounce_env.engine.layout import CLOSED, NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE, State, Tables
 from bounce_env.engine.parts import rail_offset
-from bounce_env.engine.search import contact_normal
+from bounce_env.engine.search import wall_normal
 from bounce_env.engine.tolerances import ULPS_OF_SPEED
 from bounce_env.engine.touch import on_capsule
 
@@ -24,6 +25,8 @@ def snap(ball: Record, tables: Tables, paddles: Table, w: int, scene: int) -> No
         _snap_to_circle(ball, tables.circles, scene)
     elif ball.hit_kind == ON_ARC:
         _snap_to_arc(ball, tables.arcs, scene)
+    elif ball.hit_kind == OFF_END:
+        _snap_to_face(ball, tables.faces, ball.hit_index, scene)
     elif ball.contact >= 0:
         _snap_to_face(ball, tables.faces, ball.contact, scene)
 
@@ -96,11 +99,14 @@ def arrive(state: State, tables: Tables, w: int, k: int, x0: float, y0: float, v
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = tables.scenes[scene]
-    nx, ny = contact_normal(state, tables.faces, w, k)
+    left = _left_face(ball, tables.faces, head.faces, state.face_sides, scene)
+    nx, ny = wall_normal(state, tables.faces, w, k, left)
     _arrive_at_lines(ball, tables.faces, head.faces, state.face_sides, w, k, scene, x0, y0, vx0, vy0)
-    if ball.hit_kind == OFF_END and ball.next_kind != NEXT_PART:
-        _turn_corner(ball, tables.faces, head.faces, state.face_sides, w, k, scene, nx, ny)
     _arrive_at_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, x0, y0, vx0, vy0)
+    if left >= 0:
+        turn = _turn_about_end(ball, tables.faces, left, scene, nx, ny)
+        _turn_to_faces(ball, tables.faces, head.faces, state.face_sides, w, k, scene, left, turn)
+        _turn_to_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, turn)
 
 
 @function
@@ -137,29 +143,70 @@ def _arrive_at_arcs(
 
 
 @function
-def _turn_corner(
-    ball: Record, faces: Table, count: int, sides: Table, w: int, k: int, scene: int, nx: float, ny: float
-) -> None:
-    """A point that slides off a wall's end is, of each wall that begins there, on the side that it comes to.
+def _left_face(ball: Record, faces: Table, count: int, sides: Table, scene: int) -> int:
+    """The face off whose end a ball of no radius comes just now, sliding or flying along it; -1 if there is none.
 
-    Turning about the end from the wall that it leaves through the side that it is on, that is the side met first.
+    What goes on at the end may be met at the same instant, and be what it is said to have hit.
     """
     if faces is None or sides is None:
+        return -1
+    if ball.next_kind != NEXT_PART and ball.hit_kind == OFF_END:
+        return ball.hit_index
+    for i in range(count):
+        face = faces[scene, i]
+        x, y = ball.x - face.x, ball.y - face.y
+        if leaves_end(x, y, ball.vx, ball.vy, None, None, face.ux, face.uy, face.length, face.reach, ball.slack):
+            along = x * face.ux + y * face.uy
+            if -ball.slack <= along <= face.length + ball.slack:
+                return i
+    return -1
+
+
+@function
+def _turn_about_end(ball: Record, faces: Table, left: int, scene: int, nx: float, ny: float) -> float:
+    """Which way a point turns that comes off a wall's end: about the end, from the wall through the side it is on.
+
+    1.0 is counter-clockwise, -1.0 clockwise. Of what else begins or ends there it is on the side that is met first.
+    """
+    if faces is None:
+        return 0.0
+    face = faces[scene, left]
+    along = (ball.x - face.x) * face.ux + (ball.y - face.y) * face.uy
+    back = -1.0 if along > 0.5 * face.length else 1.0
+    return 1.0 if back * (face.ux * ny - face.uy * nx) > 0.0 else -1.0
+
+
+@function
+def _turn_to_faces(
+    ball: Record, faces: Table, count: int, sides: Table, w: int, k: int, scene: int, left: int, turn: float
+) -> None:
+    if faces is None or sides is None:
         return
-    left = faces[scene, ball.contact]
-    along = (ball.x - left.x) * left.ux + (ball.y - left.y) * left.uy
-    back = -1.0 if along > 0.5 * left.length else 1.0
-    turn = 1.0 if back * (left.ux * ny - left.uy * nx) > 0.0 else -1.0
     for i in range(count):
         face = faces[scene, i]
         dx, dy = ball.x - face.x, ball.y - face.y
-        if i == ball.contact or abs(dy * face.ux - dx * face.uy) > ball.slack:
+        if i == left or abs(dy * face.ux - dx * face.uy) > ball.slack:
             continue
         along = dx * face.ux + dy * face.uy
         if abs(along) <= ball.slack:
             sides[w, k, i] = -1 if turn > 0.0 else 1
         elif abs(along - face.length) <= ball.slack:
             sides[w, k, i] = 1 if turn > 0.0 else -1
+
+
+@function
+def _turn_to_arcs(ball: Record, arcs: Table, count: int, sides: Table, w: int, k: int, scene: int, turn: float) -> None:
+    if arcs is None or sides is None:
+        return
+    for i in range(count):
+        arc = arcs[scene, i]
+        if arc.span == CLOSED:
+            continue
+        dx, dy = ball.x - arc.x, ball.y - arc.y
+        if abs(dx - arc.sx * arc.outer) + abs(dy - arc.sy * arc.outer) <= 2.0 * ball.slack:
+            sides[w, k, i] = 1 if turn > 0.0 else -1
+        elif abs(dx - arc.ex * arc.outer) + abs(dy - arc.ey * arc.outer) <= 2.0 * ball.slack:
+            sides[w, k, i] = -1 if turn > 0.0 else 1
 
 
 @function

@@ -7,6 +7,7 @@ from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import CROSSING, FIELD_EDGE, LINE, OUT, State, Tables
 from bounce_env.engine.resolve import count_hit
 from bounce_env.engine.search import plan_crossing, pull, resolve_next
+from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 
 
 @function
@@ -190,5 +191,12 @@ def _side_of_circle(ball: Record, x: float, y: float, radius: float, gx: float, 
 
 @function
 def _lean(ball: Record, nx: float, ny: float, gx: float, gy: float) -> float:
+    """To which side of a line that it is on the ball moves, or else is pulled from; 0 where it does neither.
+
+    Less than rounding is nothing: a ball sent along a turned wall is on the left of it, as along any other.
+    """
     lean = ball.vx * nx + ball.vy * ny
-    return lean if lean != 0.0 else -(gx * nx + gy * ny)
+    if abs(lean) > ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy)):
+        return lean
+    press = -(gx * nx + gy * ny)
+    return press if abs(press) > PRESSING * (abs(gx) + abs(gy)) else 0.0

@@ -97,3 +97,14 @@ def fly(ball: Record, gx: Feature, gy: Feature, t: float, hi: float, lo: float) 
 def slow_on_circle(vx: float, vy: float, reach: float, slack: float) -> float:
     """Closing slower than this [m/s] is no hit of a circle: the rounding of the velocity and of the normal."""
     return (ULPS_OF_SPEED + slack / reach) * (abs(vx) + abs(vy))
+
+
+@function
+def grazes(closing_square: float, opening: float, depth: float) -> bool:
+    """Whether a ball comes no deeper than `depth` [m] into what it closes on, while its gap bends open.
+
+    closing_square: the square of how fast it closes in [m^2/s^2]. opening: the gap's second derivative [m/s^2].
+    Such a touch in passing is told where the path is nearest, after closing / opening seconds: nothing closes there, so
+    there is no bounce, but all that the ball touches is seen, as where a wall goes on smoothly as an arc.
+    """
+    return closing_square < 2.0 * opening * depth

@@ -8,7 +8,7 @@ part's position and velocity, and the same functions serve. `reach` is the obsta
 import math
 
 from bounce_env.engine.arc import crossing_time
-from bounce_env.engine.flight import dot, moved, slow_on_circle, sped, swept
+from bounce_env.engine.flight import dot, grazes, moved, slow_on_circle, sped, swept
 from bounce_env.engine.jit import Feature, function
 from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED, WEIGHTLESS
 
@@ -158,7 +158,10 @@ def straight_circle_time(x: float, y: float, vx: float, vy: float, reach: float,
     if approach <= slow_on_circle(vx, vy, reach, slack) * distance:
         return math.inf
     cross = x * vy - y * vx
-    square = (vx * vx + vy * vy) * reach * reach - cross * cross
+    speed_square = vx * vx + vy * vy
+    square = speed_square * reach * reach - cross * cross
+    if grazes(abs(square), speed_square * reach, slack):
+        return approach / speed_square
     if square <= 0.0:
         return math.inf
     return max(distance - reach, 0.0) * (distance + reach) / (approach + math.sqrt(square))
@@ -182,8 +185,9 @@ def curved_circle_time(
 
     The gap f(t) to a convex obstacle satisfies f'' >= -|g|, so stepping to the first root of f + f' h - |g| h^2 / 2
     cannot step over a hit, and converges quadratically. Just after a bounce f = 0 and f' > 0, and the same step leaves
-    the circle: no ball is pushed off, no circle is skipped. Across gravity along an axis the flight is uniform: the
-    search is confined to the time in which it passes the circle there, and to flights that come near it then.
+    the circle: no ball is pushed off, no circle is skipped. A touch in passing is told where the path is nearest (see
+    `grazes`). Across gravity along an axis the flight is uniform: the search is confined to the time in which it passes
+    the circle there, and to flights that come near it then.
     """
     t = 0.0
     if gx == 0.0:
@@ -210,10 +214,8 @@ def curved_circle_time(
         if gap <= slack:
             cross = (px * qy - py * qx) / distance
             bend = cross * cross / distance + (px * gx + py * gy) / distance
-            if rate < 0.0 < bend and rate * rate <= 2.0 * bend * (gap + slack):
-                # It comes no deeper than the slack: a touch in passing. The search goes on where the gap opens again.
-                t -= 2.0 * rate / bend
-                continue
+            if rate < 0.0 and grazes(rate * rate, bend, gap + slack):
+                return t - rate / bend
             if rate < -slow_on_circle(qx, qy, reach, slack):
                 # In a hop that hardly rises above the slack the speed still changes on the last bit of the way.
                 root = math.sqrt(max(rate * rate + 2.0 * bound * gap, 0.0))

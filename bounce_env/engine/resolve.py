@@ -102,7 +102,11 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
     bounces in a corner; -1 where there is none; and the velocity [m/s] before the latter, which is not yet logged.
     """
     ball = state.balls[w, k]
+    noise = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
     for _ in range(BOUNCES_AT_ONE_INSTANT):
+        if abs(ball.vx) + abs(ball.vy) <= noise:
+            # All that the bounces have left is rounding, and would go to and fro in a corner.
+            ball.vx, ball.vy = 0.0, 0.0
         i, closing = fastest_closing(ball, state.touches, w)
         if i < 0:
             return -1, -1, ball.vx, ball.vy

@@ -8,8 +8,8 @@ a step ends. A ball in contact with a wall flies, too: along its line, under wha
 import math
 
 from bounce_env.engine.arc import arc_time
-from bounce_env.engine.flight import moved, swept, time_in_scene
-from bounce_env.engine.impact import circle_time, face_time, facing_time, falling_time
+from bounce_env.engine.flight import dot, moved, swept, time_in_scene
+from bounce_env.engine.impact import circle_time, face_time, facing_time, falling_time, leaves_end
 from bounce_env.engine.instant import before, later
 from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
 from bounce_env.engine.layout import (
@@ -57,13 +57,13 @@ def is_gate(gates: Table, scene: int, i: int) -> bool:
 
 
 @function
-def contact_normal(state: State, faces: Table, w: int, k: int) -> tuple[float, float]:
-    """Unit normal, to the ball, of the wall that the ball is in contact with; (0, 0) if there is none."""
+def wall_normal(state: State, faces: Table, w: int, k: int, i: int) -> tuple[float, float]:
+    """Unit normal, to the ball, of face `i`, that it is in contact with or touches; (0, 0) if there is none (i < 0)."""
     ball = state.balls[w, k]
-    if faces is None or ball.contact < 0:
+    if faces is None or i < 0:
         return 0.0, 0.0
-    face = faces[state.worlds[w].scene, ball.contact]
-    side = side_on(state.face_sides, w, k, ball.contact)
+    face = faces[state.worlds[w].scene, i]
+    side = side_on(state.face_sides, w, k, i)
     height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
     facing = 1.0 if side > 0 or (side == 0 and height >= 0.0) else -1.0
     return -facing * face.uy, facing * face.ux
@@ -71,7 +71,7 @@ def contact_normal(state: State, faces: Table, w: int, k: int) -> tuple[float, f
 
 @function
 def _is_level(ball: Record, face: Record, gx: Feature, gy: Feature) -> bool:
-    """Whether a ball that slides touches a wall and keeps doing so: the wall is a continuation of the one it is on."""
+    """Whether a ball touches a wall and keeps doing so: it moves along it, and nothing pulls it off."""
     height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
     if abs(abs(height) - face.reach) > ball.slack:
         return False
@@ -100,7 +100,7 @@ def first_face(
     ny: float,
     horizon: float,
 ) -> tuple[float, int]:
-    """Earliest hit of a wall's straight part before `horizon`: (duration, face). (nx, ny): see `contact_normal`."""
+    """Earliest hit of a wall's straight part before `horizon`: (duration, face). (nx, ny): see `wall_normal`."""
     best, index = horizon, -1
     if faces is None:
         return best, index
@@ -154,7 +154,7 @@ def first_circle(
     ny: float,
     horizon: float,
 ) -> tuple[float, int]:
-    """Earliest hit of a bumper or an end before `horizon`: (duration, circle). (nx, ny): see `contact_normal`.
+    """Earliest hit of a bumper or an end before `horizon`: (duration, circle). (nx, ny): see `wall_normal`.
 
     A circle that the box swept by the flight does not reach cannot be hit; most are rejected by that alone.
     """
@@ -216,15 +216,55 @@ def first_arc(
 
 
 @function
-def end_of_wall(ball: Record, faces: Table, scene: int, gx: Feature, gy: Feature) -> float:
-    """Duration after which a ball that slides on a wall leaves it at one of its ends; inf if there is none to leave."""
-    if faces is None or gx is None or ball.contact < 0:
-        return math.inf
-    face = faces[scene, ball.contact]
+def first_end(
+    ball: Record,
+    faces: Table,
+    count: int,
+    sides: Table,
+    disabled: Table,
+    w: int,
+    scene: int,
+    gx: Feature,
+    gy: Feature,
+    horizon: float,
+) -> tuple[float, int]:
+    """Earliest end before `horizon` of a wall that the ball slides on: (duration, face).
+
+    A ball of no radius that only flies along a wall comes to its end, too: what goes on there it would not meet
+    otherwise, where a disc touches the round end.
+    """
+    best, index = horizon, -1
+    if faces is None:
+        return best, index
+    if ball.contact >= 0:
+        t = _way_to_end(ball, faces[scene, ball.contact], gx, gy)
+        if t < best:
+            best, index = t, ball.contact
+    elif sides is not None:
+        for i in range(count):
+            face = faces[scene, i]
+            if is_off(disabled, w, face.element) or not _is_level(ball, face, gx, gy):
+                continue
+            x, y = ball.x - face.x, ball.y - face.y
+            along = x * face.ux + y * face.uy
+            if along < -ball.slack or along > face.length + ball.slack:
+                continue
+            if leaves_end(x, y, ball.vx, ball.vy, gx, gy, face.ux, face.uy, face.length, face.reach, ball.slack):
+                continue
+            t = _way_to_end(ball, face, gx, gy)
+            if t < best:
+                best, index = t, i
+    return best, index
+
+
+@function
+def _way_to_end(ball: Record, face: Record, gx: Feature, gy: Feature) -> float:
+    """Duration after which a ball that moves along a wall is at one of its ends; inf if it comes to none."""
     along = (ball.x - face.x) * face.ux + (ball.y - face.y) * face.uy
     rate = ball.vx * face.ux + ball.vy * face.uy
-    pull = gx * face.ux + gy * face.uy
-    return min(falling_time(along, False, rate, pull), falling_time(face.length - along, False, -rate, -pull))
+    pull = dot(gx, gy, face.ux, face.uy)
+    back = dot(gx, gy, -face.ux, -face.uy)
+    return min(falling_time(along, False, rate, pull), falling_time(face.length - along, False, -rate, back))
 
 
 @function
@@ -256,7 +296,7 @@ def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = tables.scenes[scene]
     gx, gy = pull(tables.gravity, ball)
-    nx, ny = contact_normal(state, tables.faces, w, k)
+    nx, ny = wall_normal(state, tables.faces, w, k, ball.contact)
     horizon = time_in_scene(head.extent, ball.x, ball.y, ball.vx, ball.vy, gx, gy)
     after, face = first_face(
         ball,
@@ -283,11 +323,11 @@ def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
     )
     if arc >= 0:
         ball.hit_kind, ball.hit_index = ON_ARC, arc
-    off = end_of_wall(ball, tables.faces, scene, gx, gy)
-    if off < after:
-        ball.hit_kind, ball.hit_index, after = OFF_END, ball.contact, off
+    after, end = first_end(ball, tables.faces, head.faces, state.face_sides, state.disabled, w, scene, gx, gy, after)
+    if end >= 0:
+        ball.hit_kind, ball.hit_index = OFF_END, end
     ball.end_after = after
-    met = face >= 0 or circle >= 0 or arc >= 0 or ball.hit_kind == OFF_END
+    met = face >= 0 or circle >= 0 or arc >= 0 or end >= 0
     ball.hit_after = after if met else math.inf
 
 

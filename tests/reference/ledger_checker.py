@@ -13,7 +13,18 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from ledger_known import BOUNCE, CONTACT_ENDS, CROSSING, EXACT, PART_STOPS, STANDING, TOLERANCE, Row, apart
+from ledger_known import (
+    BOUNCE,
+    CONTACT_BEGINS,
+    CONTACT_ENDS,
+    CROSSING,
+    EXACT,
+    PART_STOPS,
+    STANDING,
+    TOLERANCE,
+    Row,
+    apart,
+)
 from ledger_rows import RowChecks
 from ledger_sensors import Whole
 from ledger_touch import ULP, Ledger
@@ -85,7 +96,7 @@ class _Check(RowChecks):
             if self.walk.out:
                 self.say(index, "the ball is out of play")
                 continue
-            self.arrive(index, State(row.time, row.x, row.y, *row.before), row.kind)
+            self.arrive(index, State(row.time, row.x, row.y, *row.before), row.kind, row.element)
             match row.kind:
                 case 0:
                     self.bounce(index, row)
@@ -105,7 +116,7 @@ class _Check(RowChecks):
 
     # ---- motions
 
-    def arrive(self, index: int, seen: State, kind: int) -> None:
+    def arrive(self, index: int, seen: State, kind: int, element: int) -> None:
         """One of the ways from the last row must lead to what is seen at this one."""
         walk, mark = self.walk, self.walk.mark()
         if self.must_end and seen.time > walk.state.time and kind != CONTACT_ENDS:
@@ -113,22 +124,24 @@ class _Check(RowChecks):
         wrong = ""
         for way in self.ways:
             walk.back(mark)
-            walk.place(way.state, way.mode, way.bearer)
-            self.until = way.until
+            walk.place(*way)
             pull = walk.acceleration
             walk.carry(seen.time, index)
             here = walk.mark()
+            mode, bearer, settles_at = walk.mode, walk.bearer, walk.settles_at
             acted = walk.act()
             wrong = self.differs(way.state, pull, walk.state, seen)
-            if wrong and acted:  # it was before the commands of this instant
+            switched_off = kind in (BOUNCE, CONTACT_BEGINS) and not walk.enabled[element]
+            if acted and (wrong or switched_off):  # it was before the commands of this instant
                 walk.back(here)
+                walk.place(here.state, mode, bearer, settles_at)
                 wrong = self.differs(way.state, pull, walk.state, seen)
             if not wrong:
                 break
         if walk.unpressed:
             wrong = wrong or "the ball slides on a wall that does not bear it"
-        if kind != CROSSING and seen.time > self.until * (1.0 + EXACT):
-            wrong = wrong or f"the contact that should begin at {self.until!r} is not reported"
+        if kind != CROSSING and seen.time > walk.settles_at * (1.0 + EXACT):
+            wrong = wrong or f"the contact that should begin at {walk.settles_at!r} is not reported"
         if wrong:
             self.say(index, wrong)
 
@@ -150,7 +163,7 @@ class _Check(RowChecks):
         """The end must follow from the last row."""
         end = self.end
         if not self.walk.out:
-            self.arrive(len(self.rows), State(end.time, *end.position, *end.velocity), -1)
+            self.arrive(len(self.rows), State(end.time, *end.position, *end.velocity), -1, -1)
         elif (self.ways[0].state[1:]) != (*end.position, *end.velocity):
             self.problems.append("a ball that is out of play stays where it went out")
         if end.status != (OUT if self.walk.out else OK) and not self.may_be_stopped():

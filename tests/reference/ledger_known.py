@@ -55,12 +55,12 @@ class Row(NamedTuple):
 
 
 class Way(NamedTuple):
-    """One of the motions that a row may lead to. `until`: when its contact must begin, if it is settling."""
+    """One of the motions that a row may lead to, see `Walk.place`."""
 
     state: State
     mode: Mode
     bearer: Bearer | None
-    until: float = math.inf
+    settles_at: float = math.inf
 
 
 def apart(a: tuple[float, float], b: tuple[float, float]) -> float:
@@ -99,7 +99,6 @@ class Known:
         self.rules = Rules(scene.rest_speed, max_speed, HOP_ULPS * self.extent)
         self.kicked: dict[int, float] = {}  # when each element gave its last kick
         self.ways = [Way(start, Mode.FLIES, None)]  # that the last row may have led to
-        self.until = math.inf  # when the contact must begin to which the ball settles
         self.must_end = False  # whether the ball has left what it was in contact with
         self.reports: dict[int, list[Report]] = {}
         self.instant, self.fastest = -math.inf, 0.0  # [s] of the last bounce or contact, [m/s] in any row of it

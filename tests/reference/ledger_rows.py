@@ -27,8 +27,8 @@ class RowChecks(Known):
     def bounce(self, index: int, row: Row) -> None:
         self.remember(row)
         own = self.stands_on(index, row)
-        if self.until < math.inf:  # the contact to which it settled never began
-            self.until, self.walk.bearer = math.inf, None
+        if self.walk.settles_at < math.inf:  # the contact to which it settled never began
+            self.walk.settles_at, self.walk.bearer = math.inf, None
         self.goes_on(row)
         if own is None:
             return
@@ -104,15 +104,14 @@ class RowChecks(Known):
     def contact_begins(self, index: int, row: Row) -> None:
         self.remember(row)
         own = self.stands_on(index, row)
-        settled = self.until < math.inf
+        settles_at = self.walk.settles_at
+        settled = settles_at < math.inf
         if settled and self.walk.bearer is not None and self.walk.bearer.element == row.element:
-            early = self.until - row.time
             undisturbed = row.time not in self.commanded and not self.walk.pull.fields and not self.paddles
-            if abs(early) > EXACT * self.until and undisturbed:
-                self.say(index, f"the bounces end at {self.until!r}, not at {row.time!r}")
+            if abs(settles_at - row.time) > EXACT * settles_at and undisturbed:
+                self.say(index, f"the bounces end at {settles_at!r}, not at {row.time!r}")
         elif self.walk.bearer is not None and not settled:
             self.say(index, f"the ball is in contact with elements[{self.walk.bearer.element}]")
-        self.until = math.inf
         state = State(row.time, row.x, row.y, *row.after)
         self.ways = [Way(state, Mode.FLIES, None)]
         if own is None:
@@ -139,7 +138,7 @@ class RowChecks(Known):
         bearer = self.walk.bearer
         self.ways = [Way(State(row.time, row.x, row.y, *row.after), Mode.FLIES, None)]
         self.must_end = False
-        if bearer is None or bearer.element != row.element or self.until < math.inf:
+        if bearer is None or bearer.element != row.element or self.walk.settles_at < math.inf:
             self.say(index, f"the ball is not in contact with elements[{row.element}]")
             return
         self.stands_on(index, row)
@@ -176,7 +175,8 @@ class RowChecks(Known):
 
     def crossing(self, index: int, row: Row) -> None:
         sensor = self.scene.elements[row.element]
-        self.ways = [Way(State(row.time, row.x, row.y, *row.after), self.walk.mode, self.walk.bearer, self.until)]
+        walk = self.walk
+        self.ways = [Way(State(row.time, row.x, row.y, *row.after), walk.mode, walk.bearer, walk.settles_at)]
         if not isinstance(sensor, Sensor):
             self.say(index, f"elements[{row.element}] is no sensor")
             return

@@ -168,7 +168,7 @@ class Touches:
         # Where two features meet, both are touched: the row tells by its normal which of them it means.
         off = np.hypot(nx - self._normals[0], ny - self._normals[1])
         score = np.where(np.abs(gap) <= 1e-9 * extent, off, 10.0 + np.abs(gap))
-        better = mine & (score < self._score)
+        better = mine & (score < self._score - 1e-9)  # of a face that passes into its end the face is meant
         also = mine & ~better & (score < 1e-6) & (self._score < 1e-6) & (curvature != self._first)
         self._second = np.where(also, curvature, self._second)
         passed_on = better & (self._score < 1e-6) & (score < 1e-6) & (curvature != self._first)

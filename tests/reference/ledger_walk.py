@@ -63,6 +63,7 @@ class Walk:
         self.pieces: list[Piece] = []
         self.mode = Mode.FLIES
         self.bearer: Bearer | None = None
+        self.settles_at = math.inf
         self.out = False
         self.waiting = tuple(sorted(commands, key=lambda command: command[0]))
         self.unpressed = False  # whether it slid where nothing pressed it on the wall, since `place`
@@ -77,9 +78,9 @@ class Walk:
         on = [e for e, on in zip(self._scene.elements, self.enabled, strict=True) if on and isinstance(e, Field)]
         self.pull = Pull(self._scene.gravity, on)
 
-    def place(self, state: State, mode: Mode, bearer: Bearer | None) -> None:
-        """Go on from here."""
-        self.state, self.mode, self.bearer = state, mode, bearer
+    def place(self, state: State, mode: Mode, bearer: Bearer | None, settles_at: float = math.inf) -> None:
+        """Go on from here; `settles_at`: when the contact with the bearer begins, if it has not."""
+        self.state, self.mode, self.bearer, self.settles_at = state, mode, bearer, settles_at
         self.unpressed = False
 
     def mark(self) -> Mark:
@@ -124,6 +125,8 @@ class Walk:
         self.enabled = tuple(enabled)
         self._take_fields()
         self.state = self.state._replace(vx=vx, vy=vy)
+        if self.settles_at < math.inf:  # that contact does not begin any more, or now
+            self.place(self.state, Mode.FLIES, None)
         return True
 
     def _move(self, until: float, row: int) -> None:

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -169,6 +170,37 @@ def test_a_changed_end_is_noticed(name):
         *(End(time, (x, y), (vx, vy), other, asked) for other in {0, 1, 2, 3} - {status}),
     ]
     assert all(run._replace(end=end).problems() for end in ends)
+
+
+def shifted(element, far=20.0):
+    """The same element elsewhere."""
+    fields = ("start", "end", "center", "rail_start", "rail_end")
+    places = {name: getattr(element, name) for name in fields if getattr(element, name, None) is not None}
+    return replace(element, **{name: (x + far, y) for name, (x, y) in places.items()})
+
+
+def other_scenes(run):
+    """Scenes in which the ball would not do what it does in the run's, and what they differ in."""
+    scene = run.scene
+    for k in sorted(set(run.ledger["element"].tolist())):
+        element = scene.elements[k]
+        others = {"elsewhere": shifted(element)}
+        if getattr(element, "b", 0.0) > 0.0 and not isinstance(element, Paddle):  # not every paddle is struck
+            others["b"] = replace(element, b=element.b * (1.0 - 1e-6))
+        for what, other in others.items():
+            elements = (*scene.elements[:k], other, *scene.elements[k + 1 :])
+            yield f"elements[{k}] {what}", replace(scene, elements=elements)
+    if any(scene.gravity):
+        yield "gravity", replace(scene, gravity=tuple(1.000001 * g for g in scene.gravity))
+
+
+@pytest.mark.parametrize("name", ["pegs", "gravity box", "slide", "chain", "hollow", "passages"])
+def test_a_lawful_run_of_another_scene_is_noticed(name):
+    """Each of its flights and bounces is right, but for a wall that it passes through, a sensor it is silent of."""
+    run = RUNS[name]()
+    for what, scene in other_scenes(run):
+        start, ledger, end = played(scene, *run.start, run.end.asked, run.commands)
+        assert run._replace(start=start, ledger=ledger, end=end).problems(), what
 
 
 def test_the_runs_have_rows_of_every_kind():

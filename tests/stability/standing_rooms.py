@@ -1,6 +1,7 @@
 """Closed rooms that nothing may leave, whatever corner it is thrown into, and traps as wide as the ball."""
 
 import math
+import random
 
 from stability_case import ULP, Case, Expect, Point, Run, at, between, going, resting, speed
 from standing_drops import NEAR, R
@@ -112,7 +113,34 @@ def _lens(r: float, aim: Point) -> Case:
     )
 
 
-_PENTAGON, _STAR = regular(5), star(5)
+_STAR = star(5)
+
+
+def _along_into_arc(upwards: bool, seed: int) -> Case:
+    """Along an upright wall, touching it, into an arc that goes on from it smoothly: up a lane, or down into a bend."""
+    rng = random.Random(seed)
+    r, way, v = rng.choice((0.0135, 0.125, 0.2)), rng.uniform(0.2, 0.9), rng.uniform(2.0, 5.0)
+    side, sign = (1.0, 1.0) if upwards else (-1.0, -1.0)
+    elements = (
+        Wall((side, 0), (side, -2 * sign), name="wall"),
+        Arc((0, 0), 1, 0 if upwards else math.pi, math.pi if upwards else 2 * math.pi, name="arc"),
+        Wall((-side, 0), (-side, -2 * sign), name="other"),
+    )
+
+    def reach(run: Run) -> float:
+        x, y = run.position
+        return math.hypot(x, max(y * sign, 0.0)) + r
+
+    return Case(
+        name=f"{'lane into an arch' if upwards else 'fall into a bend'}, touching the wall, {seed}",
+        why="wall and arc are one smooth surface: the ball is inside of it for ever",
+        scene=Scene(gravity=(0, -rng.uniform(1.0, 2.0)), ball=Ball(radius=r, b=0.5), elements=elements),
+        position=(side * (1 - r), -way * sign),
+        velocity=(0.0, v * sign),
+        script=(0.8,),
+        expect=(between("reach", reach, 0.0, 1.0 + NEAR),),
+    )
+
 
 ROOMS = [
     *(
@@ -131,6 +159,7 @@ ROOMS = [
             ((0.25, 0.125), (1.0, 0.5), (0.0, -1.0)),
         )
     ),
+    *(_along_into_arc(upwards, seed) for upwards in (True, False) for seed in range(12)),
     *(_lens(r, aim) for r in (0.0, R) for aim in ((0.0, 0.8), (0.3, 0.5))),
     Case(
         name="box as large as the ball",

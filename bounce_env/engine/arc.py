@@ -186,7 +186,7 @@ def _curved(
     for i in range(4):
         start, end = borders[i], borders[i + 1]
         if not (sense * value(c, start) < 0.0 <= sense * value(c, end)):
-            turns = sense < 0.0 and start < end < horizon and end > after
+            turns = sense < 0.0 and not touching and start < end < horizon and end > after
             if turns and _touches_at(arc, reach, x, y, vx, vy, ax, ay, end, slack):
                 return end
             continue

@@ -78,31 +78,37 @@ def _snap_to_paddle(ball: Record, rails: Table, paddles: Table, w: int, scene: i
 
 
 @function
-def _side_after(height: float, rate: float, height0: float, rate0: float, slow: float, slack: float, side: int) -> int:
-    """On which side of a line the ball is: away from it the height tells, on it the way that it came.
+def _side_after(
+    height: float, rate: float, height0: float, rate0: float, t: float, slow: float, slack: float, side: int
+) -> int:
+    """On which side of a line or circle the ball is: away from it the height tells, on it the way that it came.
 
-    It came from the side that it moves away from, unless it was there already when its flight began and has not
-    turned round since; then it keeps the side that it had.
+    It came from the side that it moves away from, unless it was there already when its flight, of `t` seconds, began,
+    and neither left meanwhile nor turned round; then it keeps the side that it had.
     """
     if abs(height) > slack:
         return 1 if height > 0.0 else -1
-    if abs(rate) > slow and (abs(height0) > slack or rate * rate0 < 0.0):
+    left = abs(height0) > slack or abs(rate0) * t > 4.0 * slack
+    turned = rate * rate0 < 0.0 and abs(rate0) > slow
+    if abs(rate) > slow and (left or turned):
         return 1 if rate < 0.0 else -1
     return side
 
 
 @function
-def arrive(state: State, tables: Tables, w: int, k: int, x0: float, y0: float, vx0: float, vy0: float) -> None:
+def arrive(
+    state: State, tables: Tables, w: int, k: int, x0: float, y0: float, vx0: float, vy0: float, t: float
+) -> None:
     """Bring a ball's sides of walls and arcs up to date before it bounces.
 
-    (x0, y0) [m] and (vx0, vy0) [m/s] are where and how its flight began.
+    (x0, y0) [m] and (vx0, vy0) [m/s] are where and how its flight began, `t` seconds ago.
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = tables.scenes[scene]
     left = _left_face(ball, tables.faces, head.faces, state.face_sides, scene)
     nx, ny = wall_normal(state, tables.faces, w, k, left)
-    _arrive_at_lines(ball, tables.faces, head.faces, state.face_sides, w, k, scene, x0, y0, vx0, vy0)
-    _arrive_at_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, x0, y0, vx0, vy0)
+    _arrive_at_lines(ball, tables.faces, head.faces, state.face_sides, w, k, scene, x0, y0, vx0, vy0, t)
+    _arrive_at_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, x0, y0, vx0, vy0, t)
     if left >= 0:
         turn = _turn_about_end(ball, tables.faces, left, scene, nx, ny)
         _turn_to_faces(ball, tables.faces, head.faces, state.face_sides, w, k, scene, left, turn)
@@ -112,7 +118,7 @@ def arrive(state: State, tables: Tables, w: int, k: int, x0: float, y0: float, v
 @function
 def _arrive_at_lines(
     ball: Record, lines: Table, count: int, sides: Table, w: int, k: int, scene: int,
-    x0: float, y0: float, vx0: float, vy0: float,
+    x0: float, y0: float, vx0: float, vy0: float, t: float,
 ) -> None:  # fmt: skip
     if lines is None or sides is None:
         return
@@ -122,13 +128,13 @@ def _arrive_at_lines(
         height = (ball.y - line.y) * line.ux - (ball.x - line.x) * line.uy
         height0 = (y0 - line.y) * line.ux - (x0 - line.x) * line.uy
         rate, rate0 = ball.vy * line.ux - ball.vx * line.uy, vy0 * line.ux - vx0 * line.uy
-        sides[w, k, i] = _side_after(height, rate, height0, rate0, slow, ball.slack, sides[w, k, i])
+        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, slow, ball.slack, sides[w, k, i])
 
 
 @function
 def _arrive_at_arcs(
     ball: Record, arcs: Table, count: int, sides: Table, w: int, k: int, scene: int,
-    x0: float, y0: float, vx0: float, vy0: float,
+    x0: float, y0: float, vx0: float, vy0: float, t: float,
 ) -> None:  # fmt: skip
     if arcs is None or sides is None:
         return
@@ -136,10 +142,10 @@ def _arrive_at_arcs(
     for i in range(count):
         arc = arcs[scene, i]
         dx, dy, dx0, dy0 = ball.x - arc.x, ball.y - arc.y, x0 - arc.x, y0 - arc.y
-        distance = math.sqrt(dx * dx + dy * dy)
-        height, height0 = distance - arc.outer, math.sqrt(dx0 * dx0 + dy0 * dy0) - arc.outer
-        rate, rate0 = (ball.vx * dx + ball.vy * dy) / distance, vx0 * dx0 + vy0 * dy0
-        sides[w, k, i] = _side_after(height, rate, height0, rate0, slow, ball.slack, sides[w, k, i])
+        distance, distance0 = math.sqrt(dx * dx + dy * dy), math.sqrt(dx0 * dx0 + dy0 * dy0)
+        height, height0 = distance - arc.outer, distance0 - arc.outer
+        rate, rate0 = (ball.vx * dx + ball.vy * dy) / distance, (vx0 * dx0 + vy0 * dy0) / distance0
+        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, slow, ball.slack, sides[w, k, i])
 
 
 @function

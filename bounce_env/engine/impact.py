@@ -62,10 +62,10 @@ def line_time(
     gap = x * nx + y * ny - reach
     rate = vx * nx + vy * ny
     behind = gap < -slack or (gap <= slack and side == -facing)
-    if not behind and gap <= slack:
+    if abs(gap) <= slack:
         if abs(rate) <= ULPS_OF_SPEED * (abs(vx) + abs(vy)):
             rate = 0.0
-        if rate > 0.0:
+        if behind or rate > 0.0:
             # It has just bounced there: what is left of a gap is rounding, and would count for much in the last hops.
             gap = 0.0
     return falling_time(gap, behind, rate, dot(gx, gy, nx, ny))

@@ -142,7 +142,7 @@ def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     ball.slack = touch_tolerance(tables.scenes[scene].extent, ball.vx, ball.vy, gx, gy, t)
     fly(ball, gx, gy, t, ball.next_hi, ball.next_lo)
     snap(ball, tables, state.paddles, w, scene)
-    arrive(state, tables, w, k, x0, y0, vx0, vy0)
+    arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     resolve(state, tables, w, k, ledger)
 
 
@@ -279,7 +279,7 @@ def disturb(state: State, tables: Tables, w: int, k: int, drag: float, dvx: floa
     ball.slack = touch_tolerance(tables.scenes[world.scene].extent, ball.vx, ball.vy, gx, gy, t)
     fly(ball, gx, gy, t, world.time_hi, world.time_lo)
     ball.hit_kind = RESOLVE
-    arrive(state, tables, w, k, x0, y0, vx0, vy0)
+    arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     face_crossings(state, tables, w, k)
     ball.vx, ball.vy = drag * ball.vx + dvx, drag * ball.vy + dvy
     resolve_next(ball)

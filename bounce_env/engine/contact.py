@@ -54,7 +54,8 @@ def resolve(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None
         i = _find_contact(state, tables, w, k)
         if settling:
             contact, support = FLYING, -1  # that contact had not begun yet
-        changed = ball.contact != contact or ball.support != support
+        stopped = ball.contact == HELD and (vx0 != 0.0 or vy0 != 0.0)  # held again, after a push
+        changed = ball.contact != contact or ball.support != support or stopped
         if support >= 0 and changed:
             _log_end(state, w, k, support, vx0, vy0, ledger)
         if i >= 0 and changed:

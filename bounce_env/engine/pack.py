@@ -1,7 +1,7 @@
 """Packs validated scenes into the tables that kernels read. Uses sqrt only: the same bits on every machine."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -132,18 +132,29 @@ def _gates(scenes: Sequence[Scene]) -> Array | None:
     return gates
 
 
-def _circles(scene: Scene) -> list[Row]:
+def switch_ends(tables: Tables, scene: Scene, disabled: Collection[int]) -> None:
+    """Let the round ends in the tables of one scene be those of the elements that are not `disabled` (indices)."""
+    if tables.circles is None:
+        return
+    rows = _circles(scene, disabled)
+    tables.circles[0, : len(rows)] = rows
+    tables.scenes[0]["circles"] = len(rows)
+
+
+def _circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:
     radius = scene.ball.radius
     rows: list[Row] = [(*e.center, e.radius + radius, i) for i, e in enumerate(scene.elements) if isinstance(e, Bumper)]
     if radius > 0.0:
-        rows += _ends(scene)
+        rows += _ends(scene, disabled)
     return rows
 
 
-def _ends(scene: Scene) -> list[Row]:
+def _ends(scene: Scene, disabled: Collection[int]) -> list[Row]:
     """The round ends of walls and arcs. Of several at one point the first is kept: at a tie it is the one struck."""
     owner: dict[Point, int] = {}
     for i, element in enumerate(scene.elements):
+        if i in disabled:
+            continue
         for point in _end_points(element):
             owner.setdefault(point, i)
     return [(*point, scene.ball.radius, i) for point, i in owner.items()]

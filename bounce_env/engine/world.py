@@ -20,7 +20,7 @@ from bounce_env.engine.loop import (
     run,
 )
 from bounce_env.engine.overlap import cleared, rail_middles, rail_points
-from bounce_env.engine.pack import pack
+from bounce_env.engine.pack import pack, switch_ends
 from bounce_env.engine.snapshot import from_bytes, to_bytes
 from bounce_env.engine.view import view
 from bounce_env.scene import Field, Paddle, Scene, Sensor
@@ -102,6 +102,7 @@ class World:
         """
         at, speed = _rows("position", position), _rows("velocity", velocity)
         at[0] = cleared(self.scene, rail_middles(self.scene), float(at[0, 0]), float(at[0, 1]))
+        switch_ends(self._tables, self.scene, ())
         _reset(self._state, self._tables, at, speed)
         self._started = True
 
@@ -175,6 +176,7 @@ class World:
             centres = {i: (float(x), float(y)) for i, (x, y) in zip(self._paddles, paddles, strict=True)}
             cleared(self.scene, centres, float(balls[0, 0]), float(balls[0, 1]), disabled=others)
         disabled[0, index] = not on
+        self._switch_ends()
         _push(self._state, self._tables, 0, 0.0, 0.0)
 
     def push(self, change: npt.ArrayLike) -> None:
@@ -242,6 +244,7 @@ class World:
         the world is then as before.
         """
         from_bytes(data, self.scene, self._state)
+        self._switch_ends()
         self._started = True
 
     @property
@@ -269,6 +272,11 @@ class World:
         """One of OK, BUDGET, CRUSHED, OUT (`engine.layout`) for each ball, shape (1,)."""
         self._check_started()
         return np.array([ball.status for ball in self._state.balls[0]], np.int64)
+
+    def _switch_ends(self) -> None:
+        """An end that several elements share is, when the first of them is switched off, that of the next one."""
+        assert self._state.disabled is not None
+        switch_ends(self._tables, self.scene, np.flatnonzero(self._state.disabled[0]).tolist())
 
     def _now(self) -> tuple[Floats, Floats]:
         self._check_started()

@@ -32,6 +32,16 @@ def snap(ball: Record, tables: Tables, paddles: Table, w: int, scene: int) -> No
 
 
 @function
+def keep_along(ball: Record, faces: Table, scene: int) -> None:
+    """Take from the velocity of a ball that has slid on a wall what is not along it: rounding, of speeds it had."""
+    if faces is None or ball.contact < 0:
+        return
+    face = faces[scene, ball.contact]
+    rate = ball.vx * face.ux + ball.vy * face.uy
+    ball.vx, ball.vy = rate * face.ux, rate * face.uy
+
+
+@function
 def _snap_to_face(ball: Record, faces: Table, index: int, scene: int) -> None:
     if faces is None:
         return

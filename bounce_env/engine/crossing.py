@@ -2,6 +2,7 @@
 
 import math
 
+from bounce_env.engine.arrive import keep_along
 from bounce_env.engine.flight import fly, moved, sped, touch_tolerance
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import CROSSING, FIELD_EDGE, LINE, OUT, State, Tables
@@ -89,6 +90,7 @@ def _cross_edge(state: State, tables: Tables, w: int, k: int) -> None:
     ax, ay = pull(tables.gravity, ball)
     ball.slack = touch_tolerance(tables.scenes[state.worlds[w].scene].extent, ball.vx, ball.vy, ax, ay, after)
     fly(ball, ax, ay, after, ball.next_hi, ball.next_lo)
+    keep_along(ball, tables.faces, state.worlds[w].scene)
     ball.gx, ball.gy = new_gx, new_gy
     resolve_next(ball)
 

@@ -6,7 +6,7 @@ in its order.
 
 import math
 
-from bounce_env.engine.arrive import arrive, face_crossings, snap
+from bounce_env.engine.arrive import arrive, face_crossings, keep_along, snap
 from bounce_env.engine.contact import resolve
 from bounce_env.engine.crossing import accelerate, cross, take_sides
 from bounce_env.engine.flight import fly, touch_tolerance
@@ -141,6 +141,8 @@ def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
     ball.slack = touch_tolerance(tables.scenes[scene].extent, ball.vx, ball.vy, gx, gy, t)
     fly(ball, gx, gy, t, ball.next_hi, ball.next_lo)
+    if t > 0.0:  # else a push may wait to be resolved
+        keep_along(ball, tables.faces, scene)
     snap(ball, tables, state.paddles, w, scene)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     resolve(state, tables, w, k, ledger)
@@ -279,6 +281,7 @@ def disturb(state: State, tables: Tables, w: int, k: int, drag: float, dvx: floa
     ball.slack = touch_tolerance(tables.scenes[world.scene].extent, ball.vx, ball.vy, gx, gy, t)
     fly(ball, gx, gy, t, world.time_hi, world.time_lo)
     ball.hit_kind = RESOLVE
+    keep_along(ball, tables.faces, world.scene)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     face_crossings(state, tables, w, k)
     ball.vx, ball.vy = drag * ball.vx + dvx, drag * ball.vy + dvy

@@ -104,15 +104,12 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
     ball = state.balls[w, k]
     noise = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
     for _ in range(BOUNCES_AT_ONE_INSTANT):
-        if abs(ball.vx) + abs(ball.vy) <= noise:
-            # All that the bounces have left is rounding, and would go to and fro in a corner.
-            ball.vx, ball.vy = 0.0, 0.0
         i, closing = fastest_closing(ball, state.touches, w)
         if i < 0:
             return -1, -1, ball.vx, ball.vy
         if ball.touched > 1 and _is_damped(state, tables, w, k, i, closing):
             break
-        kicked = _bounce_from(state, tables, w, k, i, closing, ledger)
+        kicked = _bounce_from(state, tables, w, k, i, closing, noise, ledger)
         if ball.touched == 1:
             return (-1 if kicked else i), -1, ball.vx, ball.vy
     i, _ = fastest_closing(ball, state.touches, w)
@@ -138,8 +135,10 @@ def _is_damped(state: State, tables: Tables, w: int, k: int, i: int, closing: fl
 
 
 @function
-def _bounce_from(state: State, tables: Tables, w: int, k: int, i: int, closing: float, ledger: Table) -> bool:
-    """Bounce from one touched surface; returns whether it gave a kick."""
+def _bounce_from(
+    state: State, tables: Tables, w: int, k: int, i: int, closing: float, noise: float, ledger: Table
+) -> bool:
+    """Bounce from one touched surface; returns whether it gave a kick. A speed up to `noise` [m/s] left is none."""
     ball, world, touch = state.balls[w, k], state.worlds[w], state.touches[w, i]
     head, material = tables.scenes[world.scene], tables.elements[world.scene, touch.element]
     rebound, f = material.b * closing, material.f
@@ -154,6 +153,9 @@ def _bounce_from(state: State, tables: Tables, w: int, k: int, i: int, closing: 
         ball.rolling = -1
     vx0, vy0 = ball.vx, ball.vy
     vx, vy = bounce(vx0, vy0, touch.nx, touch.ny, touch.ux, touch.uy, rebound, f)
+    if abs(vx) + abs(vy) <= noise:
+        # All that the bounces at this instant have left is rounding, and would go to and fro in a corner.
+        vx, vy = 0.0, 0.0
     ball.vx, ball.vy, over = capped(vx, vy, touch.nx, touch.ny, touch.ux, touch.uy, head.max_speed)
     world.speed_capped += over
     count_bounce(state, w, k, touch, vx0, vy0, ledger)

@@ -103,6 +103,7 @@ def _wedge(q_left: float, q_right: float, e: float, r: float) -> Case:
             *(() if q_left == q_right else (when(f"{first} begin", min(ends), last_hops),)),
             *resting(0.0, r * math.sqrt(2), NEAR + CORNER / HALF),
         ),
+        exact_scaling=r > 0.0,  # a point comes so near to the origin that its coordinates are denormal
     )
 
 

@@ -63,7 +63,7 @@ class Case:
     refused: str = ""
     keep_ledger: bool = True
     max_events: int = 20_000  # more than any case but one needs: an endless loop is found soon
-    exact_scaling: bool = True  # whether it may be run at other sizes (not: numbers at the edge of what a float can hold)
+    exact_scaling: bool = True  # whether it may be run at other sizes (not: at the edge of what a float holds)
 
 
 @dataclass

@@ -50,7 +50,7 @@ RAIL = record(
 
 WORLD = record(
     time_hi="f8", time_lo="f8",
-    scene="i8",
+    scene="u8",
     bounces="i8", speed_capped="i8",  # counts since reset
     events="i8",  # of the present call or step
     drag_hi="f8", drag_lo="f8",  # when drag acted last

@@ -48,7 +48,7 @@ class Results(NamedTuple):
     truncated: Array  # (worlds,) bool
     final_observations: Array  # (worlds, size) float32: of episodes that ended in this step, when reset in the same
     ended: Array  # (worlds,) BOOKS of the episodes that ended in this step
-    busy: Array  # (worlds,) int64: the kernel's list of worlds in which something happens
+    busy: Array  # (worlds,) uint64: the kernel's list of worlds in which something happens
 
 
 class _Parts(NamedTuple):
@@ -98,7 +98,7 @@ def new_results(worlds: int, size: int) -> Results:
         truncated=np.zeros(worlds, np.bool_),
         final_observations=np.zeros((worlds, size), np.float32),
         ended=np.zeros(worlds, BOOKS),
-        busy=np.zeros(worlds, np.int64),
+        busy=np.zeros(worlds, np.uint64),
     )
 
 
@@ -119,10 +119,11 @@ def borrow_results(results: Results) -> Results:
 @function
 def all_finite(numbers: Array) -> bool:
     """Whether there is neither NaN nor infinity in (n,) floats."""
-    finite = True
+    # Counted, not asked one by one: so the processor looks at several at a time.
+    others = 0
     for number in numbers:
-        finite &= abs(number) < math.inf
-    return finite
+        others += 0 if abs(number) < math.inf else 1
+    return others == 0
 
 
 @function

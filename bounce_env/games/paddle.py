@@ -317,7 +317,8 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
     results.terminated[first:last] = False
     results.truncated[first:last] = False
     busy = first
-    for w in range(first, last):
+    # Of an unsigned index Numba does not ask whether it counts from the end.
+    for w in range(np.uint64(first), np.uint64(last)):
         if not glide(state, tables, rules, episodes, w, min(max(actions[w], -1.0), 1.0), results):
             results.busy[busy] = w
             busy += 1

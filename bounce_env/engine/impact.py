@@ -214,9 +214,11 @@ def curved_circle_time(
         if gap <= slack:
             cross = (px * qy - py * qx) / distance
             bend = cross * cross / distance + (px * gx + py * gy) / distance
-            if rate < 0.0 and grazes(rate * rate, bend, gap + slack):
+            slow = rate >= -slow_on_circle(qx, qy, reach, slack)
+            told = slow and t == 0.0  # where the flight begins all that is touched has just been seen
+            if rate < 0.0 and not told and grazes(rate * rate, bend, gap + slack):
                 return t - rate / bend
-            if rate < -slow_on_circle(qx, qy, reach, slack):
+            if not slow:
                 # In a hop that hardly rises above the slack the speed still changes on the last bit of the way.
                 root = math.sqrt(max(rate * rate + 2.0 * bound * gap, 0.0))
                 return max(t + 2.0 * gap / (root - rate), 0.0)

@@ -65,8 +65,10 @@ def line_time(
     if abs(gap) <= slack:
         if abs(rate) <= ULPS_OF_SPEED * (abs(vx) + abs(vy)):
             rate = 0.0
-        if behind or rate > 0.0:
-            # It has just bounced there: what is left of a gap is rounding, and would count for much in the last hops.
+        # It has just bounced there: what is left of a gap is rounding, and would count for much in the last hops.
+        if behind:
+            gap = min(gap, 0.0)
+        elif rate > 0.0:
             gap = 0.0
     return falling_time(gap, behind, rate, dot(gx, gy, nx, ny))
 

@@ -139,3 +139,11 @@ def test_point_on_a_wall_leaves_on_its_side(side: int) -> None:
         assert leaving == pytest.approx(2.0, rel=1e-12)
         closing = face_time(0.5, offset, 0.1, -side * 1.0, 0.0, 0.0, 1.0, 0.0, 9.0, 0.0, side, SLACK, math.inf)
         assert closing == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("height", [3.4e-14, 1e-17, 0.0])
+def test_a_point_that_turns_before_a_wall_does_not_meet_its_far_face(height: float) -> None:
+    """Nearly touching in a pocket, where much counts as touching, it comes down a little and is pulled up again."""
+    fall = -0.9 * math.sqrt(2.0 * 3.5 * height)
+    t = face_time(0.5, height, 1e-6, fall, 5.0, 3.5, 1.0, 0.0, 1.0, 0.0, 1.0, 4.5e-13, math.inf)
+    assert t == math.inf

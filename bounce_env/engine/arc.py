@@ -7,7 +7,7 @@ arc's span; the others go through its opening.
 import math
 from typing import Any
 
-from bounce_env.engine.flight import grazes, moved, slow_on_circle, sped
+from bounce_env.engine.flight import bending, grazes, moved, slow_on_circle, sped
 from bounce_env.engine.jit import Feature, Record, function
 from bounce_env.engine.layout import CLOSED, MINOR
 from bounce_env.engine.quartic import distance_polynomial, monotone_borders, root_between, value, without_root_at_zero
@@ -114,10 +114,7 @@ def _until_nearest(
     """How long [s] until a point that touches a circle is nearest, if it does so in passing (see `grazes`); else 0."""
     distance = math.sqrt(x * x + y * y)
     closing = sense * (x * vx + y * vy) / distance
-    cross = (x * vy - y * vx) / distance
-    opening = -sense * cross * cross / distance
-    if ax is not None:
-        opening -= sense * (x * ax + y * ay) / distance
+    opening = -sense * bending(x, y, vx, vy, ax, ay)
     if closing > 0.0 and opening > 0.0 and grazes(closing * closing, opening, slack):
         return closing / opening
     return 0.0

@@ -5,10 +5,11 @@ Sides matter to a ball of no radius, which can be on a wall, and to what is cros
 
 import math
 
+from bounce_env.engine.flight import fly, touch_tolerance
 from bounce_env.engine.impact import leaves_end
-from bounce_env.engine.jit import Record, Table, function
+from bounce_env.engine.jit import Feature, Record, Table, function
 from bounce_env.engine.layout import CLOSED, NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE, State, Tables
-from bounce_env.engine.parts import rail_offset
+from bounce_env.engine.parts import is_off, rail_offset
 from bounce_env.engine.search import wall_normal
 from bounce_env.engine.tolerances import ULPS_OF_SPEED
 from bounce_env.engine.touch import on_capsule
@@ -32,7 +33,18 @@ def snap(ball: Record, tables: Tables, paddles: Table, w: int, scene: int) -> No
 
 
 @function
-def keep_along(ball: Record, faces: Table, scene: int) -> None:
+def end_flight(
+    ball: Record, tables: Tables, scene: int, gx: Feature, gy: Feature, t: float, hi: float, lo: float
+) -> None:
+    """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
+    ball.slack = touch_tolerance(tables.scenes[scene].extent, ball.vx, ball.vy, gx, gy, t)
+    fly(ball, gx, gy, t, hi, lo)
+    if t > 0.0:  # in no time nothing is rounded, and a push may wait to be resolved
+        _keep_along(ball, tables.faces, scene)
+
+
+@function
+def _keep_along(ball: Record, faces: Table, scene: int) -> None:
     """Take from the velocity of a ball that has slid on a wall what is not along it: rounding, of speeds it had."""
     if faces is None or ball.contact < 0:
         return
@@ -115,7 +127,7 @@ def arrive(
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = tables.scenes[scene]
-    left = _left_face(ball, tables.faces, head.faces, state.face_sides, scene)
+    left = _left_face(ball, tables.faces, head.faces, state.face_sides, state.disabled, w, scene)
     nx, ny = wall_normal(state, tables.faces, w, k, left)
     _arrive_at_lines(ball, tables.faces, head.faces, state.face_sides, w, k, scene, x0, y0, vx0, vy0, t)
     _arrive_at_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, x0, y0, vx0, vy0, t)
@@ -159,7 +171,7 @@ def _arrive_at_arcs(
 
 
 @function
-def _left_face(ball: Record, faces: Table, count: int, sides: Table, scene: int) -> int:
+def _left_face(ball: Record, faces: Table, count: int, sides: Table, disabled: Table, w: int, scene: int) -> int:
     """The face off whose end a ball of no radius comes just now, sliding or flying along it; -1 if there is none.
 
     What goes on at the end may be met at the same instant, and be what it is said to have hit.
@@ -170,11 +182,10 @@ def _left_face(ball: Record, faces: Table, count: int, sides: Table, scene: int)
         return ball.hit_index
     for i in range(count):
         face = faces[scene, i]
-        x, y = ball.x - face.x, ball.y - face.y
-        if leaves_end(x, y, ball.vx, ball.vy, None, None, face.ux, face.uy, face.length, face.reach, ball.slack):
-            along = x * face.ux + y * face.uy
-            if -ball.slack <= along <= face.length + ball.slack:
-                return i
+        x, y, vx, vy = ball.x - face.x, ball.y - face.y, ball.vx, ball.vy
+        leaves = leaves_end(x, y, vx, vy, None, None, face.ux, face.uy, face.length, face.reach, ball.slack)
+        if leaves and not is_off(disabled, w, face.element):
+            return i
     return -1
 
 

@@ -2,8 +2,8 @@
 
 import math
 
-from bounce_env.engine.arrive import keep_along
-from bounce_env.engine.flight import fly, moved, sped, touch_tolerance
+from bounce_env.engine.arrive import end_flight
+from bounce_env.engine.flight import fly, moved, sped
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import CROSSING, FIELD_EDGE, LINE, OUT, State, Tables
 from bounce_env.engine.resolve import count_hit
@@ -88,9 +88,7 @@ def _cross_edge(state: State, tables: Tables, w: int, k: int) -> None:
         return
     new_gx, new_gy = ball.gx, ball.gy
     ax, ay = pull(tables.gravity, ball)
-    ball.slack = touch_tolerance(tables.scenes[state.worlds[w].scene].extent, ball.vx, ball.vy, ax, ay, after)
-    fly(ball, ax, ay, after, ball.next_hi, ball.next_lo)
-    keep_along(ball, tables.faces, state.worlds[w].scene)
+    end_flight(ball, tables, state.worlds[w].scene, ax, ay, after, ball.next_hi, ball.next_lo)
     ball.gx, ball.gy = new_gx, new_gy
     resolve_next(ball)
 

@@ -100,6 +100,17 @@ def slow_on_circle(vx: float, vy: float, reach: float, slack: float) -> float:
 
 
 @function
+def bending(x: float, y: float, vx: float, vy: float, ax: Feature, ay: Feature) -> float:
+    """Second derivative [m/s^2] of the distance from the origin."""
+    distance = math.sqrt(x * x + y * y)
+    across = (x * vy - y * vx) / distance
+    turn = across * across / distance
+    if ax is None:
+        return turn
+    return turn + (x * ax + y * ay) / distance
+
+
+@function
 def grazes(closing_square: float, opening: float, depth: float) -> bool:
     """Whether a ball comes no deeper than `depth` [m] into what it closes on, while its gap bends open.
 

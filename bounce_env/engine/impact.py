@@ -8,7 +8,7 @@ part's position and velocity, and the same functions serve. `reach` is the obsta
 import math
 
 from bounce_env.engine.arc import crossing_time
-from bounce_env.engine.flight import dot, grazes, moved, slow_on_circle, sped, swept
+from bounce_env.engine.flight import bending, dot, grazes, moved, slow_on_circle, sped, swept
 from bounce_env.engine.jit import Feature, function
 from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED, WEIGHTLESS
 
@@ -74,6 +74,13 @@ def line_time(
 
 
 @function
+def beside(x: float, y: float, ux: float, uy: float, length: float, slack: float) -> bool:
+    """Whether a point lies beside a wall, however far: neither before its start nor beyond its end."""
+    along = x * ux + y * uy
+    return -slack <= along <= length + slack
+
+
+@function
 def leaves_end(
     x: float,
     y: float,
@@ -89,6 +96,8 @@ def leaves_end(
 ) -> bool:
     """Whether a ball slides off the end of a wall just now: it touches still, but will be beside it when it falls."""
     slow = ULPS_OF_SPEED * (abs(vx) + abs(vy))
+    if not beside(x, y, ux, uy, length, slack):
+        return False
     if abs(abs(y * ux - x * uy) - reach) > slack or abs(vy * ux - vx * uy) > slow:
         return False
     along = x * ux + y * uy
@@ -123,11 +132,8 @@ def facing_time(
     t = line_time(x, y, vx, vy, gx, gy, ux, uy, reach, facing, side, slack)
     if t > horizon or t == math.inf or leaves_end(x, y, vx, vy, gx, gy, ux, uy, length, reach, slack):
         return math.inf
-    along = moved(x, vx, gx, t) * ux + moved(y, vy, gy, t) * uy
     # The slack closes the joint between two walls for a ball of no radius; for a disc the end's circle takes over.
-    if along < -slack or along > length + slack:
-        return math.inf
-    return t
+    return t if beside(moved(x, vx, gx, t), moved(y, vy, gy, t), ux, uy, length, slack) else math.inf
 
 
 @function
@@ -214,8 +220,7 @@ def curved_circle_time(
         gap = distance - reach - away
         rate = (px * qx + py * qy) / distance
         if gap <= slack:
-            cross = (px * qy - py * qx) / distance
-            bend = cross * cross / distance + (px * gx + py * gy) / distance
+            bend = bending(px, py, qx, qy, gx, gy)
             slow = rate >= -slow_on_circle(qx, qy, reach, slack)
             told = slow and t == 0.0  # where the flight begins all that is touched has just been seen
             if rate < 0.0 and not told and grazes(rate * rate, bend, gap + slack):

@@ -6,10 +6,10 @@ in its order.
 
 import math
 
-from bounce_env.engine.arrive import arrive, face_crossings, keep_along, snap
+from bounce_env.engine.arrive import arrive, end_flight, face_crossings, snap
 from bounce_env.engine.contact import resolve
 from bounce_env.engine.crossing import accelerate, cross, take_sides
-from bounce_env.engine.flight import fly, touch_tolerance
+from bounce_env.engine.flight import touch_tolerance
 from bounce_env.engine.instant import before, since
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import (
@@ -139,10 +139,7 @@ def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     # A kept hit is a duration from the flight's start, so that its own rounding is all there is.
     t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
     x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
-    ball.slack = touch_tolerance(tables.scenes[scene].extent, ball.vx, ball.vy, gx, gy, t)
-    fly(ball, gx, gy, t, ball.next_hi, ball.next_lo)
-    if t > 0.0:  # else a push may wait to be resolved
-        keep_along(ball, tables.faces, scene)
+    end_flight(ball, tables, scene, gx, gy, t, ball.next_hi, ball.next_lo)
     snap(ball, tables, state.paddles, w, scene)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     resolve(state, tables, w, k, ledger)
@@ -278,10 +275,8 @@ def disturb(state: State, tables: Tables, w: int, k: int, drag: float, dvx: floa
     gx, gy = pull(tables.gravity, ball)
     t = since(world.time_hi, world.time_lo, ball.hi, ball.lo)
     x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
-    ball.slack = touch_tolerance(tables.scenes[world.scene].extent, ball.vx, ball.vy, gx, gy, t)
-    fly(ball, gx, gy, t, world.time_hi, world.time_lo)
+    end_flight(ball, tables, world.scene, gx, gy, t, world.time_hi, world.time_lo)
     ball.hit_kind = RESOLVE
-    keep_along(ball, tables.faces, world.scene)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     face_crossings(state, tables, w, k)
     ball.vx, ball.vy = drag * ball.vx + dvx, drag * ball.vy + dvy

@@ -9,7 +9,7 @@ import math
 
 from bounce_env.engine.arc import arc_time
 from bounce_env.engine.flight import dot, moved, swept, time_in_scene
-from bounce_env.engine.impact import circle_time, face_time, facing_time, falling_time, leaves_end
+from bounce_env.engine.impact import beside, circle_time, face_time, facing_time, falling_time, leaves_end
 from bounce_env.engine.instant import before, later
 from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
 from bounce_env.engine.layout import (
@@ -246,8 +246,7 @@ def first_end(
             if is_off(disabled, w, face.element) or not _is_level(ball, face, gx, gy):
                 continue
             x, y = ball.x - face.x, ball.y - face.y
-            along = x * face.ux + y * face.uy
-            if along < -ball.slack or along > face.length + ball.slack:
+            if not beside(x, y, face.ux, face.uy, face.length, ball.slack):
                 continue
             if leaves_end(x, y, ball.vx, ball.vy, gx, gy, face.ux, face.uy, face.length, face.reach, ball.slack):
                 continue

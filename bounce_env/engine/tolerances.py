@@ -4,11 +4,11 @@ ULP = 2.0**-52  # (dimensionless) unit in the last place
 
 # Lengths: a gap no larger than ULPS_OF_LENGTH units in the last place of the lengths that went into it is a touch.
 # Evaluating p0 + (v0 + g t / 2) t and a distance costs about six roundings; the factor leaves room for two of them.
-ULPS_OF_LENGTH = 16.0 * 2.0**-52  # (dimensionless, times metres)
+ULPS_OF_LENGTH = 16.0 * ULP  # (dimensionless, times metres)
 
 # Speeds: closing slower than this share of the ball's speed is no hit. The bounce law rounds the speed along a wall
 # by about two units in the last place; without this a ball sent along a wall would hit it for ever.
-ULPS_OF_SPEED = 4.0 * 2.0**-52  # (dimensionless, times m/s)
+ULPS_OF_SPEED = 4.0 * ULP  # (dimensionless, times m/s)
 
 # A speed [m/s] below which nothing moves in any time that a run can last; its inverse would overflow.
 STANDING = 1e-290

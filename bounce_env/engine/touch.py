@@ -6,6 +6,7 @@ The ball does not move while its bounces at one instant are resolved, so the lis
 import math
 
 from bounce_env.engine.arc import in_span
+from bounce_env.engine.impact import beside
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import State, Tables
 from bounce_env.engine.parts import is_off, rail_offset
@@ -71,8 +72,7 @@ def _touch_faces(
         height = dy * face.ux - dx * face.uy
         if abs(height) > face.reach + ball.slack:
             continue
-        along = dx * face.ux + dy * face.uy
-        if along < -ball.slack or along > face.length + ball.slack or is_off(disabled, w, face.element):
+        if not beside(dx, dy, face.ux, face.uy, face.length, ball.slack) or is_off(disabled, w, face.element):
             continue
         facing = float(side_on(sides, w, k, i))
         if facing == 0.0:

@@ -102,8 +102,8 @@ class World:
         """
         at, speed = _rows("position", position), _rows("velocity", velocity)
         at[0] = cleared(self.scene, rail_middles(self.scene), float(at[0, 0]), float(at[0, 1]))
-        switch_ends(self._tables, self.scene, ())
         _reset(self._state, self._tables, at, speed)
+        self._switch_ends()
         self._started = True
 
     def advance(self, seconds: float, *, ledger: bool = False, max_events: int = MAX_EVENTS) -> npt.NDArray[Any] | None:

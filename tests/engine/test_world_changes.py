@@ -1,17 +1,13 @@
 """World: snapshots, drag, and what may be switched, pushed and replaced while a ball is in play."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from stability_case import new_world
 
 from bounce_env import Arc, Ball, Bumper, Paddle, Scene, Sensor, Wall, World
 from bounce_env.engine.layout import CROSSING
-
-sys.path.append(str(Path(__file__).parents[1] / "stability"))
-from stability_case import new_world
 
 ROOM = Scene(
     gravity=(0.0, -1.0),

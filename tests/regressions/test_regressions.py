@@ -11,17 +11,14 @@ They are replayed in the kernel that has all features, so that no scene needs on
 
 import json
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from stability_case import STATUS, Run, new_world
 
 from bounce_env import load_scene
-
-sys.path.append(str(Path(__file__).parents[1] / "stability"))
-from stability_case import STATUS, Run, new_world
 
 FOLDER = Path(__file__).parent / "cases"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.json"))

@@ -88,6 +88,14 @@ COMMANDS = [
         velocity=(0.5, 0.0),
     ),
     _on_floor(
+        "two pushes at one instant of sliding",
+        "velocities add: the ball hits the floor at 1 m/s, and b = 0.5 gives back half",
+        (1.0, ("push", (0.0, -1.0)), ("push", (0.25, 0.0)), 0.125),
+        "floor begin, floor bounce, floor end",
+        *at(0.5 + 0.75 * 0.125, R + 0.5 * 0.125 - 0.125**2, NEAR),
+        velocity=(0.5, 0.0),
+    ),
+    _on_floor(
         "push in the air",
         "velocities add: (0, 0.5) becomes (1, 1.5) at R + 0.5, and a parabola from there",
         (0.5, ("push", (1.0, 1.0)), 0.5),

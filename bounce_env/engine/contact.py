@@ -23,6 +23,7 @@ from bounce_env.engine.resolve import (
     bounce_from_all,
     closing_speed,
     count_bounce,
+    fastest_closing,
     is_soft,
     log,
     press_of,
@@ -213,7 +214,10 @@ def _slides_on(ball: Record, faces: Table, touches: Table, w: int, scene: int, i
 
 @function
 def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
-    """Let a ball that flies along a curve which it is pressed on leave it with the smallest rebound: one small hop."""
+    """Let a ball that flies along a curve which it is pressed on leave it with the smallest rebound: one small hop.
+
+    What else it touches was not closed on without the hop: where it would be now, the ball leaves along that.
+    """
     ball = state.balls[w, k]
     best, index = 0.0, -1
     for i in range(ball.touched):
@@ -230,6 +234,11 @@ def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     vx0, vy0 = ball.vx, ball.vy
     ball.vx, ball.vy = vx0 + hop * touch.nx, vy0 + hop * touch.ny
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    other, closing = fastest_closing(ball, state.touches, w)
+    if other >= 0:
+        touch, vx0, vy0 = state.touches[w, other], ball.vx, ball.vy
+        ball.vx, ball.vy = vx0 + closing * touch.nx, vy0 + closing * touch.ny
+        count_bounce(state, w, k, touch, vx0, vy0, ledger)
 
 
 @function

@@ -32,8 +32,8 @@ from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, UNSURE
 # How a run of the loop ends.
 DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
 
-# Bounces, the end of a contact and the beginning of another, a small hop.
-ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 3
+# Bounces, the end of a contact and the beginning of another, a small hop and what is in its way.
+ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 4
 
 
 @function

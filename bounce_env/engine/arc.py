@@ -176,7 +176,8 @@ def _curved(
     """On a parabola: all crossings in order, up to the first beside the arc."""
     c = distance_polynomial(x, y, vx, vy, ax, ay, reach)
     if touching:
-        c = without_root_at_zero(c)
+        # What is left of a gap is no way to go: the hit is where the ball is as near again.
+        c, reach = without_root_at_zero(c), math.sqrt(x * x + y * y)
     if still:
         c = without_root_at_zero(c)
     borders = monotone_borders(c, horizon)

@@ -39,11 +39,11 @@ def world_seed(generator: np.random.Generator) -> np.uint64:
 
 def picture_of(batch: Batch, world: int) -> Picture:
     """What a frame of a world shows."""
-    balls, paddles = batch.view(world)
+    balls, cores = batch.view(world)
     elements = len(batch.game.scenes[0].elements)
     return Picture(
         balls=balls[:, :2],
-        paddles=paddles,
+        cores=cores,
         alive=batch.state.balls["status"][world] != OUT,
         hits=batch.state.hits[world, :elements],
         score=float(batch.episodes[world].score),

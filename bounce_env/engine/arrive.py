@@ -5,21 +5,21 @@ Sides matter to a ball of no radius, which can be on a wall, and to what is cros
 
 import math
 
-from bounce_env.engine.flight import fly, touch_tolerance
+from bounce_env.engine.flight import bending, fly, touch_tolerance
 from bounce_env.engine.impact import leaves_end
 from bounce_env.engine.jit import Feature, Record, Table, function
 from bounce_env.engine.layout import CLOSED, NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE, State, Tables
-from bounce_env.engine.parts import is_off, rail_offset
+from bounce_env.engine.parts import core_at, is_off, turn_of
 from bounce_env.engine.search import wall_normal
-from bounce_env.engine.tolerances import ULPS_OF_SPEED
+from bounce_env.engine.tolerances import SEARCH_ENDS, ULPS_OF_SPEED
 from bounce_env.engine.touch import on_capsule
 
 
 @function
-def snap(ball: Record, tables: Tables, paddles: Table, w: int, scene: int) -> None:
+def snap(ball: Record, tables: Tables, motions: Table, w: int, scene: int) -> None:
     """Put the ball on the surface of what it hits, along the normal: the rounding of the flight ends here."""
     if ball.next_kind == NEXT_PART:
-        _snap_to_paddle(ball, tables.rails, paddles, w, scene)
+        _snap_to_part(ball, tables.parts, motions, tables.turns, ball.part_index, w, scene)
     elif ball.hit_kind == ON_FACE:
         _snap_to_face(ball, tables.faces, ball.hit_index, scene)
     elif ball.hit_kind == ON_CIRCLE:
@@ -30,6 +30,8 @@ def snap(ball: Record, tables: Tables, paddles: Table, w: int, scene: int) -> No
         _snap_to_face(ball, tables.faces, ball.hit_index, scene)
     elif ball.contact >= 0:
         _snap_to_face(ball, tables.faces, ball.contact, scene)
+    elif ball.rides >= 0:
+        _snap_to_part(ball, tables.parts, motions, tables.turns, ball.rides, w, scene)
 
 
 @function
@@ -88,15 +90,16 @@ def _snap_to_arc(ball: Record, arcs: Table, scene: int) -> None:
 
 
 @function
-def _snap_to_paddle(ball: Record, rails: Table, paddles: Table, w: int, scene: int) -> None:
-    if rails is None:
+def _snap_to_part(ball: Record, parts: Table, motions: Table, turns: Table, m: int, w: int, scene: int) -> None:
+    if parts is None or motions is None:
         return
-    rail, paddle = rails[scene, ball.part_index], paddles[w, ball.part_index]
-    offset = rail_offset(paddle, ball.hi, ball.lo)
-    cx, cy = rail.x + offset * rail.ux, rail.y + offset * rail.uy
-    nx, ny, distance = on_capsule(ball.x - cx, ball.y - cy, rail.ux, rail.uy, rail.half_width)
-    ball.x += (rail.reach - distance) * nx
-    ball.y += (rail.reach - distance) * ny
+    part, motion = parts[scene, m], motions[w, m]
+    x, y, ux, uy = core_at(part, motion, turn_of(turns, scene, m), ball.hi, ball.lo)
+    nx, ny, distance, _ = on_capsule(ball.x - x, ball.y - y, ux, uy, part.back, part.front)
+    # A search may end before a hit: then there is nothing to put the ball on.
+    if distance - part.reach <= SEARCH_ENDS * part.reach:
+        ball.x += (part.reach - distance) * nx
+        ball.y += (part.reach - distance) * ny
 
 
 @function
@@ -167,7 +170,10 @@ def _arrive_at_arcs(
         distance, distance0 = math.sqrt(dx * dx + dy * dy), math.sqrt(dx0 * dx0 + dy0 * dy0)
         height, height0 = distance - arc.outer, distance0 - arc.outer
         rate, rate0 = (ball.vx * dx + ball.vy * dy) / distance, (vx0 * dx0 + vy0 * dy0) / distance0
-        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, slow, ball.slack, sides[w, k, i])
+        # Of a touch in passing (see `grazes`) the instant, and so the way the distance changes, is only roughly known.
+        bend = bending(dx, dy, ball.vx, ball.vy, ball.ax, ball.ay)
+        vague = max(slow, math.sqrt(2.0 * abs(bend) * ball.slack))
+        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, vague, ball.slack, sides[w, k, i])
 
 
 @function

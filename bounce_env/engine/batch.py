@@ -5,11 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.drive import place
 from bounce_env.engine.instant import later
 from bounce_env.engine.jit import kernel
 from bounce_env.engine.layout import Array, State, Tables, borrow_state, borrow_tables, new_state
-from bounce_env.engine.loop import DONE, clear_hits, place, restart, resume, run
-from bounce_env.engine.overlap import cleared, rail_middles
+from bounce_env.engine.loop import DONE, clear_hits, restart, resume, run
+from bounce_env.engine.overlap import cleared, cores_at_start
 from bounce_env.engine.pack import pack
 from bounce_env.engine.view import view
 from bounce_env.scene import Scene
@@ -64,7 +65,7 @@ class Worlds:
                 raise ValueError(f"{name}: must be finite and of shape ({len(self.state.worlds)}, 2)")
         for row, s in zip(at, self.state.worlds["scene"].tolist(), strict=True):
             scene = self.scenes[s]
-            row[:] = cleared(scene, rail_middles(scene), float(row[0]), float(row[1]))
+            row[:] = cleared(scene, cores_at_start(scene), float(row[0]), float(row[1]))
         _reset(self.state, self.tables, at, speed)
 
     def advance(self, seconds: float, max_events: int = 1_000_000) -> int:
@@ -76,7 +77,7 @@ class Worlds:
         """x, y [m], vx, vy [m/s] of every world's ball now, shape (worlds, 4)."""
         rows = np.empty((len(self.state.worlds), 4))
         for w in range(len(rows)):
-            view(self.state, self.tables, w, rows[w : w + 1], np.empty((0, 2)))
+            view(self.state, self.tables, w, rows[w : w + 1], np.empty((0, 4)))
         return rows
 
     @property

@@ -12,12 +12,15 @@ from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import (
     CONTACT_BEGINS,
     CONTACT_ENDS,
+    CRUSHED,
     FLYING,
     HELD,
     RESOLVE,
+    RIDING,
     State,
     Tables,
 )
+from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.resolve import (
     along_speed,
     bounce_from_all,
@@ -29,9 +32,19 @@ from bounce_env.engine.resolve import (
     press_of,
     rolling_speed,
     slow_speed,
+    take_vague,
 )
 from bounce_env.engine.search import plan_rest, plan_standing
-from bounce_env.engine.tolerances import ALIGNED, BALANCE, CORNER, PRESSING, STANDING, SWING, ULPS_OF_LENGTH
+from bounce_env.engine.tolerances import (
+    ALIGNED,
+    BALANCE,
+    CORNER,
+    PRESSING,
+    STANDING,
+    SWING,
+    ULPS_OF_LENGTH,
+    ULPS_OF_SPEED,
+)
 from bounce_env.engine.touch import collect_touches
 
 
@@ -48,25 +61,17 @@ def resolve(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None
     contact, support, settling = ball.contact, ball.support, ball.settling
     ball.settling = 0
     collect_touches(state, tables, w, k)
+    if ball.vague > 0.0:
+        take_vague(ball, state.touches, w)
     single, corner, vx0, vy0 = bounce_from_all(state, tables, w, k, ledger)
+    if ball.status == CRUSHED:
+        return
     _let_go(ball)
-    i = -1
     if tables.gravity is not None:
-        i = _find_contact(state, tables, w, k)
         if settling:
             contact, support = FLYING, -1  # that contact had not begun yet
-        stopped = ball.contact == HELD and (vx0 != 0.0 or vy0 != 0.0)  # held again, after a push
-        changed = ball.contact != contact or ball.support != support or stopped
-        if support >= 0 and changed:
-            _log_end(state, w, k, support, vx0, vy0, ledger)
-        if i >= 0 and changed:
-            touch = state.touches[w, i]
-            ball.nx, ball.ny = touch.nx, touch.ny
-            log(
-                ledger, state.worlds[w], ball, k, touch.element, CONTACT_BEGINS,
-                touch.nx, touch.ny, vx0, vy0, touch.ux, touch.uy,
-            )  # fmt: skip
-            corner = -1
+        i = _change_contact(state, tables, w, k, contact, support, vx0, vy0, ledger)
+        corner = corner if i < 0 else -1
     if corner >= 0:
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
     if ball.contact == FLYING and (tables.gravity is not None or tables.arcs is not None):
@@ -74,7 +79,7 @@ def resolve(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None
     face_crossings(state, tables, w, k)
     vx, vy, duration = ball.vx, ball.vy, -1.0
     if tables.gravity is not None and single >= 0 and ball.contact == FLYING:
-        duration = _settle(state, tables, tables.faces, w, k, single)
+        duration = _settle(state, tables, w, k, single)
     for _ in range(2):
         plan_standing(state, tables, w, k)
         if duration < 0.0 or ball.hit_after > duration:
@@ -85,6 +90,32 @@ def resolve(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None
     if duration >= 0.0:
         ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
     plan_rest(state, tables, w, k)
+    plan_pairs(state, tables, state.pairs, w, k)
+
+
+@function
+def _change_contact(
+    state: State, tables: Tables, w: int, k: int, contact: int, support: int, vx: float, vy: float, ledger: Table
+) -> int:
+    """Find the ball's contact and log the end of the one that it had, and the beginning of another.
+
+    (vx, vy): its velocity [m/s] before. Returns which touched surface a new contact is with, -1 if there is none.
+    """
+    ball = state.balls[w, k]
+    i = _find_contact(state, tables, w, k)
+    stopped = ball.contact == HELD and (vx != ball.vx or vy != ball.vy)  # held again, after a push
+    if ball.contact == contact and ball.support == support and not stopped:
+        return -1
+    if support >= 0:
+        _log_end(state, w, k, support, vx, vy, ledger)
+    if i >= 0:
+        touch = state.touches[w, i]
+        ball.nx, ball.ny = touch.nx, touch.ny
+        log(
+            ledger, state.worlds[w], ball, k, touch.element, CONTACT_BEGINS,
+            touch.nx, touch.ny, vx, vy, touch.ux, touch.uy,
+        )  # fmt: skip
+    return i
 
 
 @function
@@ -96,7 +127,7 @@ def _is_slow(ball: Record, extent: float) -> bool:
 
 @function
 def _let_go(ball: Record) -> None:
-    ball.contact, ball.support = FLYING, -1
+    ball.contact, ball.rides, ball.support = FLYING, -1, -1
     ball.ax, ball.ay = ball.gx, ball.gy
 
 
@@ -112,6 +143,8 @@ def _find_contact(state: State, tables: Tables, w: int, k: int) -> int:
         touch = state.touches[w, i]
         if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or press_of(ball, touch) == 0.0:
             continue
+        if not _lets_hold(ball, state.touches, w, i):
+            continue
         f = tables.elements[scene, touch.element].f
         if f == 0.0 or (f < 1.0 and head.rest_speed == 0.0):
             return _hold(ball, touch, i)
@@ -124,7 +157,7 @@ def _find_contact(state: State, tables: Tables, w: int, k: int) -> int:
         if i >= 0:
             return _hold(ball, state.touches[w, i], i)
     for i in range(ball.touched):
-        if _slides_on(ball, tables.faces, state.touches, w, scene, i):
+        if _slides_on(ball, state.touches, w, i):
             return i
     return -1
 
@@ -145,9 +178,21 @@ def _swings_out(ball: Record, touch: Record, rest_speed: float) -> bool:
 
 
 @function
+def _lets_hold(ball: Record, touches: Table, w: int, i: int) -> bool:
+    """Whether nothing else that the ball touches moves into it where it is held by one surface."""
+    held = touches[w, i]
+    for j in range(ball.touched):
+        other = touches[w, j]
+        away = (held.ux - other.ux) * other.nx + (held.uy - other.uy) * other.ny
+        if away < -ULPS_OF_SPEED * (abs(held.ux) + abs(held.uy) + abs(other.ux) + abs(other.uy)):
+            return False
+    return True
+
+
+@function
 def _hold(ball: Record, touch: Record, i: int) -> int:
-    ball.contact, ball.support = HELD, touch.element
-    ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
+    ball.contact, ball.rides, ball.support = HELD, touch.part, touch.element
+    ball.vx, ball.vy, ball.ax, ball.ay = touch.ux, touch.uy, 0.0, 0.0
     return i
 
 
@@ -170,14 +215,20 @@ def _carries_alone(ball: Record, touch: Record) -> bool:
     """Whether a surface is level beneath the ball, which does not move away: its bounces there are summed instead."""
     level = abs(ball.gx * touch.ny - ball.gy * touch.nx) <= ALIGNED * (abs(ball.gx) + abs(ball.gy))
     beneath = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
-    return level and beneath and not touch.moves and closing_speed(ball, touch) >= -slow_speed(ball, touch)
+    return level and beneath and _stands(touch) and closing_speed(ball, touch) >= -slow_speed(ball, touch)
+
+
+@function
+def _stands(touch: Record) -> bool:
+    """Whether a touched surface does not move now."""
+    return not touch.moves and touch.ux == 0.0 and touch.uy == 0.0
 
 
 @function
 def _shares(ball: Record, one: Record, other: Record) -> tuple[float, float]:
     """The forces (per mass, m/s^2) along two normals that together hold the ball; negative where there are none."""
     turn = one.nx * other.ny - one.ny * other.nx
-    if one.moves or other.moves or abs(turn) <= ALIGNED:
+    if not _stands(one) or not _stands(other) or abs(turn) <= ALIGNED:
         return -1.0, -1.0
     noise = ALIGNED * (abs(ball.gx) + abs(ball.gy))
     of_one = (ball.gy * other.nx - ball.gx * other.ny) / turn
@@ -186,30 +237,39 @@ def _shares(ball: Record, one: Record, other: Record) -> tuple[float, float]:
 
 
 @function
-def _slides_on(ball: Record, faces: Table, touches: Table, w: int, scene: int, i: int) -> bool:
-    """Let the ball slide along a touched wall, if it is pressed on it, does not leave it, and nothing is in the way."""
+def _slides_on(ball: Record, touches: Table, w: int, i: int) -> bool:
+    """Let the ball slide along what it touches, if that is straight, the ball is pressed on it and stays beside it.
+
+    On a part that slides itself it does so in the part's frame.
+    """
     touch = touches[w, i]
     slow = slow_speed(ball, touch)
     # However little it is pressed: what is not constrained would sink in by and by.
     pressed = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
-    if faces is None or touch.face < 0 or closing_speed(ball, touch) < -slow or not pressed:
+    if touch.bend != 0.0 or touch.moves or closing_speed(ball, touch) < -slow or not pressed:
         return False
-    face = faces[scene, touch.face]
-    along = (ball.x - face.x) * face.ux + (ball.y - face.y) * face.uy
-    rate = ball.vx * face.ux + ball.vy * face.uy
-    pull = ball.gx * face.ux + ball.gy * face.uy
+    ux, uy = touch.ny, -touch.nx
+    rate = (ball.vx - touch.ux) * ux + (ball.vy - touch.uy) * uy
+    pull = ball.gx * ux + ball.gy * uy
     noise = PRESSING * (abs(ball.gx) + abs(ball.gy))
     lean = rate if abs(rate) > slow else (pull if abs(pull) > noise else 0.0)
-    if (along >= face.length - ball.slack and lean > 0.0) or (along <= ball.slack and lean < 0.0):
+    if (touch.along >= touch.length - ball.slack and lean > 0.0) or (touch.along <= ball.slack and lean < 0.0):
         return False
-    ax, ay = pull * face.ux, pull * face.uy
+    ax, ay = pull * ux, pull * uy
     for j in range(ball.touched):
         other = touches[w, j]
         if closing_speed(ball, other) >= -slow_speed(ball, other) and ax * other.nx + ay * other.ny < -noise:
             return False
-    ball.contact, ball.support = touch.face, touch.element
-    ball.vx, ball.vy, ball.ax, ball.ay = rate * face.ux, rate * face.uy, ax, ay
+    _support(ball, touch)
+    ball.vx, ball.vy, ball.ax, ball.ay = touch.ux + rate * ux, touch.uy + rate * uy, ax, ay
     return True
+
+
+@function
+def _support(ball: Record, touch: Record) -> None:
+    """Let a ball be in contact with what it touches: with a straight side of it that it slides along."""
+    ball.contact = touch.face if touch.part < 0 else RIDING
+    ball.rides, ball.support = touch.part, touch.element
 
 
 @function
@@ -242,7 +302,7 @@ def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
 
 
 @function
-def _settle(state: State, tables: Tables, faces: Table, w: int, k: int, single: int) -> float:
+def _settle(state: State, tables: Tables, w: int, k: int, single: int) -> float:
     """Sum the bounces still to come on a wall, if they rise above no tolerance; returns how long they take [s], or -1.
 
     With hops of durations tau, b tau, b^2 tau ... they end after tau / (1 - b); meanwhile the ball is on the wall. With
@@ -252,21 +312,22 @@ def _settle(state: State, tables: Tables, faces: Table, w: int, k: int, single: 
     head, touch = tables.scenes[scene], state.touches[w, single]
     material = tables.elements[scene, touch.element]
     press, rebound, b, f = press_of(ball, touch), -closing_speed(ball, touch), material.b, material.f
-    if faces is None or touch.face < 0 or head.rest_speed > 0.0 or not 0.0 < b < 1.0:
+    if touch.bend != 0.0 or touch.moves or head.rest_speed > 0.0 or not 0.0 < b < 1.0:
         return -1.0
     if press == 0.0 or not is_soft(rebound, press, head.extent):
         return -1.0
-    face = faces[scene, touch.face]
+    ux, uy = touch.ny, -touch.nx
     hop = 2.0 * rebound / press
     duration = hop / (1.0 - b)
-    speed = ball.vx * face.ux + ball.vy * face.uy
-    pull = ball.gx * face.ux + ball.gy * face.uy
+    speed = (ball.vx - touch.ux) * ux + (ball.vy - touch.uy) * uy
+    pull = ball.gx * ux + ball.gy * uy
     if f < 1.0:
         way = speed * hop / (1.0 - f * b)
         way += pull * hop * hop * (1.0 + f * b) / (2.0 * (1.0 - f * b) * (1.0 - b * b))
         speed, pull = way / duration, 0.0
-    ball.vx, ball.vy, ball.ax, ball.ay = speed * face.ux, speed * face.uy, pull * face.ux, pull * face.uy
-    ball.contact, ball.support, ball.settling = touch.face, touch.element, 1
+    ball.vx, ball.vy, ball.ax, ball.ay = touch.ux + speed * ux, touch.uy + speed * uy, pull * ux, pull * uy
+    _support(ball, touch)
+    ball.nx, ball.ny, ball.settling = touch.nx, touch.ny, 1
     return duration
 
 

@@ -6,6 +6,7 @@ from bounce_env.engine.arrive import end_flight
 from bounce_env.engine.flight import fly, moved, sped
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import CROSSING, FIELD_EDGE, LINE, OUT, State, Tables
+from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.resolve import count_hit
 from bounce_env.engine.search import plan_crossing, pull, resolve_next
 from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
@@ -72,6 +73,7 @@ def _report(
         fly(ball, gx, gy, after, ball.next_hi, ball.next_lo)
         ball.status = OUT
         ball.next_hi, ball.next_lo = math.inf, 0.0
+        plan_pairs(state, tables, state.pairs, w, k)
     else:
         plan_crossing(state, tables, w, k, after, ball.sensor_kind, ball.sensor_index)
 

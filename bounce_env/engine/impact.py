@@ -270,14 +270,15 @@ def capsule_time(
     gy: Feature,
     ux: float,
     uy: float,
-    half_width: float,
+    back: float,
+    front: float,
     reach: float,
     slack: float,
     horizon: float,
 ) -> float:
-    """Hit of a capsule about the origin, whose core reaches `half_width` to both sides along the unit (ux, uy)."""
-    ax, ay = half_width * ux, half_width * uy
-    t = face_time(x + ax, y + ay, vx, vy, gx, gy, ux, uy, 2.0 * half_width, reach, 0, slack, horizon)
-    t = min(t, circle_time(x + ax, y + ay, vx, vy, gx, gy, reach, slack, min(t, horizon)))
-    t = min(t, circle_time(x - ax, y - ay, vx, vy, gx, gy, reach, slack, min(t, horizon)))
+    """Hit of a capsule whose core runs from `back` to `front` [m] along the unit (ux, uy) through the origin."""
+    bx, by, fx, fy = back * ux, back * uy, front * ux, front * uy
+    t = face_time(x - bx, y - by, vx, vy, gx, gy, ux, uy, front - back, reach, 0, slack, horizon)
+    t = min(t, circle_time(x - bx, y - by, vx, vy, gx, gy, reach, slack, min(t, horizon)))
+    t = min(t, circle_time(x - fx, y - fy, vx, vy, gx, gy, reach, slack, min(t, horizon)))
     return t if t <= horizon else math.inf

@@ -23,10 +23,11 @@ def record(**fields: str) -> np.dtype[Any]:
 
 SCENE = record(
     # How many rows of each table this scene uses.
-    faces="i8", circles="i8", arcs="i8", sensors="i8", rings="i8", fields="i8", paddles="i8",
+    faces="i8", circles="i8", arcs="i8", sensors="i8", rings="i8", fields="i8", parts="i8",
     extent="f8",  # [m] the largest coordinate of the scene plus the ball's radius: the scale of round-off
     max_speed="f8",  # [m/s] inf where the scene has no cap
     rest_speed="f8",  # [m/s]
+    ball_radius="f8", ball_b="f8",
 )  # fmt: skip
 ELEMENT = record(
     b="f8", f="f8",  # the ball's times the element's
@@ -43,9 +44,14 @@ ARC = record(
 SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", drain="i8", element="i8")
 RING = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
 EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
-RAIL = record(
-    x="f8", y="f8", ux="f8", uy="f8", span="f8",  # the paddle's centre runs `span` metres from (x, y)
-    half_width="f8", reach="f8", max_speed="f8", element="i8",
+PART = record(  # what moves as it is told: a capsule that slides along its core, or turns about (x, y)
+    x="f8", y="f8", ux="f8", uy="f8",  # [m] where it is at offset 0; unit vector along its core
+    back="f8", front="f8",  # [m] where the core begins and ends along that vector
+    radius="f8", reach="f8",  # [m] about the core; the same plus the ball's
+    span="f8", start="f8",  # [m or rad] from stop to stop; offset after a reset
+    up_speed="f8", down_speed="f8",  # [m/s or rad/s] the fastest either way
+    shuttle="f8",  # [m/s] of a part that turns back at its stops: the speed at which it sets off; otherwise 0
+    element="i8",
 )  # fmt: skip
 
 WORLD = record(
@@ -64,30 +70,37 @@ BALL = record(
     next_hi="f8", next_lo="f8", next_kind="i8",  # the ball's next event
     status="i8",
     gx="f8", gy="f8",  # acceleration: gravity and fields
-    contact="i8",  # the face that the ball slides on, FLYING or HELD
+    contact="i8",  # the face that the ball slides on, FLYING, HELD or RIDING
+    rides="i8",  # the part that carries it, sliding or held; otherwise -1
     support="i8",  # the element that it is in contact with, -1 in free flight
     settling="i8",  # 1 while the last bounces before a contact are summed
     nx="f8", ny="f8",  # normal of that contact, to the ball
     rolling="i8",  # the element with a curve that it was last set rolling on, otherwise -1
     slack="f8",  # [m] what counts as touching at that instant
+    vague="f8",  # [m/s] by how much another ball's push may miss its direction at that instant
     touched="i8",  # how many surfaces it touched when it was last resolved
     hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
     end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene
     sensor_after="f8", sensor_kind="i8", sensor_index="i8",
     zone_after="f8",  # duration to the next entry into or exit from a zone that a part can reach
     part_hi="f8", part_lo="f8", part_index="i8",  # next hit of a moving part, as far as its velocity is known
+    struck="i8", squeezes="i8", sx="f8", sy="f8",  # the last strike by a closing part, see `engine.crush`
+    snx="f8", sny="f8", sux="f8", suy="f8",
 )  # fmt: skip
 TOUCH = record(
     nx="f8", ny="f8", ux="f8", uy="f8",  # unit normal to the ball, velocity of the surface [m/s]
     bend="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
-    moves="i8",  # 1 of a part
-    element="i8", face="i8",  # the face of a wall's straight part, otherwise -1
+    along="f8", length="f8",  # [m] of a straight one: where on it the ball is, with the normal on its left
+    least="f8",  # [m/s] the smallest rebound from a part that turns or stretches
+    moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
+    element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
 )  # fmt: skip
+PAIR = record(hi="f8", lo="f8")  # when two balls hit each other while both keep to their flights
 COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
 ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
-PADDLE = record(
-    offset="f8", velocity="f8", hi="f8", lo="f8",  # along the rail, at the instant of the last command or stop
-    command="f8",  # [m/s] as asked for; `velocity` is 0 where a stop holds the paddle against it
+MOTION = record(  # of a part, at the instant of its last command or stop
+    offset="f8", velocity="f8", hi="f8", lo="f8",  # [m, m/s] along the rail, or [rad, rad/s] of the stroke
+    command="f8",  # as asked for; `velocity` is 0 where a stop or a crushed ball holds the part against it
 )  # fmt: skip
 LEDGER = record(
     time="f8", ball="i8", element="i8", kind="i8", x="f8", y="f8", nx="f8", ny="f8",
@@ -102,13 +115,13 @@ OK, BUDGET, CRUSHED, OUT = 0, 1, 2, 3
 # Kinds of ledger rows.
 BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = 0, 1, 2, 3, 4, 5
 # Kinds of standing obstacles.
-ON_FACE, ON_CIRCLE, ON_ARC, OFF_END, RESOLVE = 0, 1, 2, 3, 4
+ON_FACE, ON_CIRCLE, ON_ARC, OFF_END, RESOLVE, OFF_PART = 0, 1, 2, 3, 4, 5
 # Kinds of sensors.
 LINE, RING_ENTRY, FIELD_EDGE = 0, 1, 2
 # Spans of arcs: 2 pi, up to pi, more.
 CLOSED, MINOR, MAJOR = 0, 1, 2
-# `contact` of a ball that is in flight, and of one that rests.
-FLYING, HELD = -1, -2
+# `contact` of a ball that is in flight, of one that rests, and of one that slides on a part.
+FLYING, HELD, RIDING = -1, -2, -3
 # Kinds of a ball's next event.
 NEXT_HIT, NEXT_PART, NEXT_SENSOR, NEXT_ZONE = 0, 1, 2, 3
 
@@ -126,7 +139,8 @@ class Tables(NamedTuple):
     sensors: Array | None
     rings: Array | None
     edges: Array | None  # of fields
-    rails: Array | None
+    parts: Array | None
+    turns: Array | None  # (scenes, parts) int8: 1 or -1, which way a part turns; 0 slides; None: no scene has any
     drags: Array | None  # (scenes,) factor on the velocity at each instant of a command; None: no scene has any
 
 
@@ -135,13 +149,14 @@ class State(NamedTuple):
 
     worlds: Array
     balls: Array  # (worlds, balls)
-    paddles: Array | None  # (worlds, paddles)
-    zones: Array | None  # (worlds, balls, paddles)
+    motions: Array | None  # (worlds, parts)
+    zones: Array | None  # (worlds, balls, parts)
     face_sides: Array | None  # (worlds, balls, faces) int8; only for a ball of no radius
     arc_sides: Array | None  # (worlds, balls, arcs) int8; only for a ball of no radius
     sensor_sides: Array | None  # (worlds, balls, sensors) int8
     ring_sides: Array | None  # (worlds, balls, rings) int8: 1 outside, -1 inside
     edge_sides: Array | None  # (worlds, balls, edges) int8: 1 on the field's side
+    pairs: Array | None  # (worlds, balls, balls) PAIR, by the later and the earlier ball; None for one ball, and points
     touches: Array  # (worlds, TOUCHES) TOUCH: what a ball touches at the instant that is resolved
     disabled: Array | None  # (worlds, elements) int8; None where nothing can be switched off
     cooling: Array | None  # (worlds, elements) COOLING; None where no scene has a cooldown
@@ -161,13 +176,14 @@ def new_state(tables: Tables, worlds: int, balls: int, point: bool, switches: bo
     return State(
         worlds=np.zeros(worlds, WORLD),
         balls=np.zeros((worlds, balls), BALL),
-        paddles=None if tables.rails is None else np.zeros((worlds, tables.rails.shape[1]), PADDLE),
-        zones=None if tables.rails is None else np.zeros((worlds, balls, tables.rails.shape[1]), ZONE),
+        motions=None if tables.parts is None else np.zeros((worlds, tables.parts.shape[1]), MOTION),
+        zones=None if tables.parts is None else np.zeros((worlds, balls, tables.parts.shape[1]), ZONE),
         face_sides=sides(tables.faces) if point else None,
         arc_sides=sides(tables.arcs) if point else None,
         sensor_sides=sides(tables.sensors),
         ring_sides=sides(tables.rings),
         edge_sides=sides(tables.edges),
+        pairs=None if point or balls == 1 else np.zeros((worlds, balls, balls), PAIR),
         touches=np.zeros((worlds, TOUCHES), TOUCH),
         disabled=np.zeros(elements, np.int8) if switches else None,
         cooling=np.zeros(elements, COOLING) if tables.elements["cooldown"].any() else None,
@@ -181,13 +197,14 @@ def borrow_state(state: State) -> State:
     return State(
         borrow(state.worlds),
         borrow(state.balls),
-        borrow(state.paddles),
+        borrow(state.motions),
         borrow(state.zones),
         borrow(state.face_sides),
         borrow(state.arc_sides),
         borrow(state.sensor_sides),
         borrow(state.ring_sides),
         borrow(state.edge_sides),
+        borrow(state.pairs),
         borrow(state.touches),
         borrow(state.disabled),
         borrow(state.cooling),
@@ -209,6 +226,7 @@ def borrow_tables(tables: Tables) -> Tables:
         borrow(tables.sensors),
         borrow(tables.rings),
         borrow(tables.edges),
-        borrow(tables.rails),
+        borrow(tables.parts),
+        borrow(tables.turns),
         borrow(tables.drags),
     )

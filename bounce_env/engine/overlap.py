@@ -3,26 +3,28 @@
 import math
 from collections.abc import Collection, Iterator, Mapping
 
-from bounce_env.engine.pack import direction, extent
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.engine.pack import direction, extent, sin_cos
 from bounce_env.engine.tolerances import START_OVERLAP
-from bounce_env.scene import Arc, Bumper, Element, Paddle, Scene, Wall
+from bounce_env.scene import Arc, Bumper, Element, Flipper, Paddle, Part, Scene, Wall
 from bounce_env.scene.checks import label
 
 Point = tuple[float, float]
+Core = tuple[Point, Point]
 
 
-def cleared(
-    scene: Scene, paddle_centres: Mapping[int, Point], x: float, y: float, disabled: Collection[int] = ()
-) -> Point:
+def cleared(scene: Scene, cores: Mapping[int, Core], x: float, y: float, disabled: Collection[int] = ()) -> Point:
     """The place (x, y) [m] for the ball's centre, moved to the surface where it overlaps by round-off only.
 
-    `paddle_centres` gives the centre of each paddle by its index in `scene.elements`, `disabled` the elements that are
+    `cores` gives the ends of the core of each part by its index in `scene.elements`, `disabled` the elements that are
     switched off. A ball may be half-way through a one-way wall. Raises ValueError, naming the
     element, where the ball overlaps one by more than `START_OVERLAP` of the scene's extent.
     """
     allowed = START_OVERLAP * extent(scene)
     for index, element in enumerate(scene.elements):
-        nearest = _from_element(element, paddle_centres.get(index), x, y)
+        nearest = _from_element(element, cores.get(index), x, y)
         if nearest is None or index in disabled:
             continue
         dx, dy, distance, radius = nearest
@@ -37,29 +39,50 @@ def cleared(
     return x, y
 
 
-def gaps(scene: Scene, paddle_centres: Mapping[int, Point], x: float, y: float) -> Iterator[tuple[int, float]]:
+def gaps(scene: Scene, cores: Mapping[int, Core], x: float, y: float) -> Iterator[tuple[int, float]]:
     """For each element that bounces, but for one-way walls: its index and the gap [m] to a ball at (x, y)."""
     for index, element in enumerate(scene.elements):
-        nearest = _from_element(element, paddle_centres.get(index), x, y)
+        nearest = _from_element(element, cores.get(index), x, y)
         if nearest is not None:
             yield index, nearest[2] - nearest[3] - scene.ball.radius
 
 
-def rail_middles(scene: Scene) -> dict[int, Point]:
-    """Where the paddles are after a reset: the middle of each rail [m], by index in `scene.elements`."""
-    return rail_points(scene, {})
+def apart(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
+    """Raise ValueError where two balls at `positions` (balls, 2) [m] overlap by more than is lost by rounding.
+
+    Less than that is undone along the line between them.
+    """
+    radius = scene.ball.radius
+    for k in range(len(positions) if radius > 0.0 else 0):
+        for j in range(k):
+            dx, dy = (positions[k] - positions[j]).tolist()
+            distance = math.sqrt(dx * dx + dy * dy)
+            overlap = 2.0 * radius - distance
+            if overlap > START_OVERLAP * extent(scene):
+                raise ValueError(
+                    f"ball {k} at {tuple(positions[k].tolist())} overlaps ball {j} by {overlap:.6g} m: "
+                    f"their centres must be at least {2.0 * radius:.6g} m apart"
+                )
+            if overlap > 0.0:
+                positions[k] += np.array((dx, dy)) * (overlap / distance)
 
 
-def rail_points(scene: Scene, offsets: Mapping[int, float]) -> dict[int, Point]:
-    """The centres of the paddles [m] at `offsets` along their rails [m], in the middle where none is given."""
-    points = {}
-    for index, element in enumerate(scene.elements):
-        if isinstance(element, Paddle):
-            ux, uy, span = direction(element.rail_start, element.rail_end)
-            offset = offsets.get(index, 0.5 * span)
-            x, y = element.rail_start
-            points[index] = (x + offset * ux, y + offset * uy)
-    return points
+def cores_at_start(scene: Scene) -> dict[int, Core]:
+    """The ends of the parts' cores after a reset [m], by index in `scene.elements`."""
+    return {index: _core_at_start(element) for index, element in scene.parts}
+
+
+def _core_at_start(part: Part) -> Core:
+    if isinstance(part, Flipper):
+        (x, y), (s, c) = part.pivot, sin_cos(part.rest_angle)
+        return part.pivot, (x + part.length * c, y + part.length * s)
+    if isinstance(part, Bumper):
+        return part.center, part.center
+    ux, uy, span = direction(part.rail_start, part.rail_end)
+    x, y = part.rail_start
+    x, y = x + 0.5 * span * ux, y + 0.5 * span * uy
+    ax, ay = part.half_width * ux, part.half_width * uy
+    return (x - ax, y - ay), (x + ax, y + ay)
 
 
 def describe(element: Element, index: int) -> str:
@@ -67,21 +90,16 @@ def describe(element: Element, index: int) -> str:
     return label(index, type(element).__name__.lower(), element.name)
 
 
-def _from_element(
-    element: Element, centre: Point | None, x: float, y: float
-) -> tuple[float, float, float, float] | None:
+def _from_element(element: Element, core: Core | None, x: float, y: float) -> tuple[float, float, float, float] | None:
     """Vector from the nearest point of an element's core to (x, y), its length, and the radius about the core [m]."""
+    if isinstance(element, Paddle | Flipper | Bumper) and core is not None:
+        return *_from_segment(*core, x, y), element.radius
     if isinstance(element, Wall) and not element.one_way:
         return *_from_segment(element.start, element.end, x, y), 0.0
     if isinstance(element, Bumper):
         return *_from_segment(element.center, element.center, x, y), element.radius
     if isinstance(element, Arc):
         return *_from_arc(element, x, y), 0.0
-    if isinstance(element, Paddle) and centre is not None:
-        ux, uy, _ = direction(element.rail_start, element.rail_end)
-        ax, ay = ux * element.half_width, uy * element.half_width
-        start, end = (centre[0] - ax, centre[1] - ay), (centre[0] + ax, centre[1] + ay)
-        return *_from_segment(start, end, x, y), element.radius
     return None
 
 

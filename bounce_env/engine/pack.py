@@ -16,7 +16,7 @@ from bounce_env.engine.layout import (
     FACE,
     MAJOR,
     MINOR,
-    RAIL,
+    PART,
     RING,
     SCENE,
     SENSOR,
@@ -24,7 +24,7 @@ from bounce_env.engine.layout import (
     Tables,
 )
 from bounce_env.engine.trig import sin_cos as compiled_sin_cos
-from bounce_env.scene import Arc, Bumper, Field, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Bumper, Field, Flipper, Part, Scene, Sensor, Wall, moves
 
 sin_cos = from_python(compiled_sin_cos)
 
@@ -45,9 +45,9 @@ def pack(scenes: Sequence[Scene]) -> Tables:
     arcs = _table(ARC, scenes, _arcs)
     rings = _table(RING, scenes, _rings)
     edges = _table(EDGE, scenes, _edges)
-    rails = _table(RAIL, scenes, _rails)
-    rows = (_faces, _circles, _arcs, _sensors, _rings, _edges, _rails)
-    heads = [(*(len(of(s)) for of in rows), extent(s), _cap(s), s.rest_speed) for s in scenes]
+    parts = _table(PART, scenes, _parts)
+    rows = (_faces, _circles, _arcs, _sensors, _rings, _edges, _parts)
+    heads = [(*(len(of(s)) for of in rows), extent(s), _cap(s), s.rest_speed, s.ball.radius, s.ball.b) for s in scenes]
     elements = _table(ELEMENT, scenes, _materials)
     gravity = np.array([scene.gravity for scene in scenes], np.float64)
     return Tables(
@@ -61,7 +61,8 @@ def pack(scenes: Sequence[Scene]) -> Tables:
         sensors=sensors,
         rings=rings,
         edges=edges,
-        rails=rails,
+        parts=parts,
+        turns=_turns(scenes),
         drags=np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
     )
 
@@ -143,7 +144,11 @@ def switch_ends(tables: Tables, scene: Scene, disabled: Collection[int]) -> None
 
 def _circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:
     radius = scene.ball.radius
-    rows: list[Row] = [(*e.center, e.radius + radius, i) for i, e in enumerate(scene.elements) if isinstance(e, Bumper)]
+    rows: list[Row] = [
+        (*e.center, e.radius + radius, i)
+        for i, e in enumerate(scene.elements)
+        if isinstance(e, Bumper) and not moves(e)
+    ]
     if radius > 0.0:
         rows += _ends(scene, disabled)
     return rows
@@ -216,16 +221,35 @@ def _turns_left(points: Sequence[Point]) -> bool:
     return (bx - ax) * (cy - by) > (by - ay) * (cx - bx)
 
 
-def _rails(scene: Scene) -> list[Row]:
-    return [
-        (
-            *e.rail_start,
-            *direction(e.rail_start, e.rail_end),
-            e.half_width,
-            e.radius + scene.ball.radius,
-            e.max_speed,
-            i,
-        )
-        for i, e in enumerate(scene.elements)
-        if isinstance(e, Paddle)
+def _parts(scene: Scene) -> list[Row]:
+    return [(*_part(e, scene.ball.radius), i) for i, e in scene.parts]
+
+
+def _part(e: Part, ball_radius: float) -> Row:
+    """A PART but for the index of its element."""
+    thick = (e.radius, e.radius + ball_radius)
+    if isinstance(e, Flipper):
+        s, c = sin_cos(e.rest_angle)
+        stroke = abs(e.active_angle - e.rest_angle)
+        return (*e.pivot, c, s, 0.0, e.length, *thick, stroke, 0.0, e.up_speed, e.down_speed, 0.0)
+    if isinstance(e, Bumper):
+        assert e.rail_end is not None
+        ux, uy, span = direction(e.center, e.rail_end)
+        return (*e.center, ux, uy, 0.0, 0.0, *thick, span, 0.0, e.speed, e.speed, e.speed)
+    ux, uy, span = direction(e.rail_start, e.rail_end)
+    shape = (-e.half_width, e.half_width, *thick)
+    return (*e.rail_start, ux, uy, *shape, span, 0.5 * span, e.max_speed, e.max_speed, 0.0)
+
+
+def _turns(scenes: Sequence[Scene]) -> Array | None:
+    """Which way each part turns: 1, -1, or 0 for one that slides; None where none turns."""
+    signs = [
+        [(1 if e.active_angle > e.rest_angle else -1) if isinstance(e, Flipper) else 0 for _, e in scene.parts]
+        for scene in scenes
     ]
+    if not any(map(any, signs)):
+        return None
+    turns = np.zeros((len(scenes), max(map(len, signs))), np.int8)
+    for s, row in enumerate(signs):
+        turns[s, : len(row)] = row
+    return turns

@@ -1,11 +1,22 @@
-"""The reach of moving parts, and what a ball meets of them: zones, stops, and the hit while both keep their motion."""
+"""Moving parts: where they are and how fast, when they stop, the zone that each can reach, and what a ball meets there.
+
+A part is a capsule. It slides along its core (a paddle, a bumper on a rail) or turns about one end of it (a flipper),
+at a speed that is constant between commands and stops.
+"""
 
 import math
 
+from bounce_env.engine.arc import crossing_time
 from bounce_env.engine.flight import dot, moved, sped, touch_tolerance
 from bounce_env.engine.impact import capsule_time, falling_time
 from bounce_env.engine.instant import before, later, since
 from bounce_env.engine.jit import Feature, Record, Table, function
+from bounce_env.engine.layout import State, Tables
+from bounce_env.engine.trig import sin_cos
+from bounce_env.engine.turning import turning_time
+
+# The zone of a part is wider than its reach by this share: it keeps rounding of the border from hiding a hit.
+ZONE_MARGIN = 1.01
 
 
 @function
@@ -17,7 +28,40 @@ def is_off(disabled: Table, w: int, element: int) -> bool:
 
 
 @function
-def zone_change(height: float, rate: float, pull: Feature, border: float, inside: bool, after: float) -> float:
+def turn_of(turns: Table, scene: int, m: int) -> int:
+    """Which way part `m` turns, 1 or -1; 0 where it slides."""
+    if turns is None:
+        return 0
+    return turns[scene, m]
+
+
+@function
+def offset_at(motion: Record, hi: float, lo: float) -> float:
+    """Where on its way [m or rad] a part is at an instant of its present motion."""
+    return motion.offset + motion.velocity * since(hi, lo, motion.hi, motion.lo)
+
+
+@function
+def core_at(part: Record, motion: Record, turn: int, hi: float, lo: float) -> tuple[float, float, float, float]:
+    """Where a part is at an instant of its present motion: (x, y) [m] and the unit vector along its core."""
+    offset = offset_at(motion, hi, lo)
+    if turn != 0:
+        s, c = sin_cos(turn * offset)
+        return part.x, part.y, part.ux * c - part.uy * s, part.ux * s + part.uy * c
+    return part.x + offset * part.ux, part.y + offset * part.uy, part.ux, part.uy
+
+
+@function
+def stop_instant(motion: Record, part: Record) -> tuple[float, float]:
+    """Instant at which the part's present motion ends at a stop: (hi, lo), inf if it stands."""
+    if motion.velocity == 0.0:
+        return math.inf, 0.0
+    room = part.span - motion.offset if motion.velocity > 0.0 else motion.offset
+    return later(motion.hi, motion.lo, room / abs(motion.velocity))
+
+
+@function
+def strip_change(height: float, rate: float, pull: Feature, border: float, inside: bool, after: float) -> float:
     """When |height + rate t + pull t^2 / 2| next passes `border`, from the flight's start, no earlier than `after`."""
     best = math.inf
     for facing in (1.0, -1.0):
@@ -33,107 +77,122 @@ def zone_change(height: float, rate: float, pull: Feature, border: float, inside
 
 @function
 def plan_zones(
-    ball: Record,
-    zones: Table,
-    rails: Table,
-    count: int,
-    w: int,
-    k: int,
-    scene: int,
-    gx: Feature,
-    gy: Feature,
-    now: float,
-) -> None:
+    ball: Record, state: State, tables: Tables, zones: Table, parts: Table, w: int, k: int, scene: int,
+    gx: Feature, gy: Feature, now: float,
+) -> None:  # fmt: skip
     """Bring the ball's zones up to `now` seconds into its flight, and set when the next of them changes.
 
-    The zone of a paddle is the strip along its rail outside which it cannot be met. It is a static sensor of the
-    engine's own: passing its border neither re-bases the flight nor shows in the ledger.
+    The zone of a part is where it can be met: of one that slides the strip along its rail, of one that turns the circle
+    about its pivot. It is a static sensor of the engine's own: passing its border neither re-bases the flight nor shows
+    in the ledger.
     """
     ball.zone_after = math.inf
-    if rails is None or zones is None:
+    if parts is None or zones is None:
         return
-    for m in range(count):
-        rail, zone = rails[scene, m], zones[w, k, m]
-        height = (ball.y - rail.y) * rail.ux - (ball.x - rail.x) * rail.uy
-        # The margin keeps rounding of the border from hiding a hit.
-        border = 1.01 * rail.reach
-        if now == 0.0:
-            zone.inside, zone.after = 1 if abs(height) <= border else 0, 0.0
-        elif zone.after <= now:
-            zone.inside = 1 - zone.inside
-        if zone.after <= now:
-            rate = ball.vy * rail.ux - ball.vx * rail.uy
-            zone.after = zone_change(height, rate, dot(gx, gy, -rail.uy, rail.ux), border, zone.inside == 1, now)
-            if zone.after > ball.end_after:
-                zone.after = math.inf
+    for m in range(tables.scenes[scene].parts):
+        part, zone = parts[scene, m], zones[w, k, m]
+        turn = turn_of(tables.turns, scene, m)
+        if turn != 0:
+            _plan_circle(ball, part, zone, gx, gy, now)
+        else:
+            _plan_strip(ball, part, zone, gx, gy, now)
         ball.zone_after = min(ball.zone_after, zone.after)
 
 
 @function
-def rail_offset(paddle: Record, hi: float, lo: float) -> float:
-    """Where on its rail [m] the paddle is at an instant of its present motion."""
-    return paddle.offset + paddle.velocity * since(hi, lo, paddle.hi, paddle.lo)
+def _plan_strip(ball: Record, part: Record, zone: Record, gx: Feature, gy: Feature, now: float) -> None:
+    height = (ball.y - part.y) * part.ux - (ball.x - part.x) * part.uy
+    border = ZONE_MARGIN * part.reach
+    if now == 0.0:
+        zone.inside, zone.after = 1 if abs(height) <= border else 0, 0.0
+    elif zone.after <= now:
+        zone.inside = 1 - zone.inside
+    if zone.after <= now:
+        rate = ball.vy * part.ux - ball.vx * part.uy
+        zone.after = strip_change(height, rate, dot(gx, gy, -part.uy, part.ux), border, zone.inside == 1, now)
+        if zone.after > ball.end_after:
+            zone.after = math.inf
 
 
 @function
-def stop_instant(paddle: Record, rail: Record) -> tuple[float, float]:
-    """Instant at which the paddle's present motion ends at a stop: (hi, lo), inf if it stands."""
-    if paddle.velocity == 0.0:
-        return math.inf, 0.0
-    room = rail.span - paddle.offset if paddle.velocity > 0.0 else paddle.offset
-    return later(paddle.hi, paddle.lo, room / abs(paddle.velocity))
+def _plan_circle(ball: Record, part: Record, zone: Record, gx: Feature, gy: Feature, now: float) -> None:
+    x, y = ball.x - part.x, ball.y - part.y
+    border = ZONE_MARGIN * (part.front + part.reach)
+    if now == 0.0:
+        zone.inside, zone.after = 1 if x * x + y * y <= border * border else 0, 0.0
+    elif zone.after <= now:
+        zone.inside = 1 - zone.inside
+    if zone.after <= now:
+        sense = 1.0 if zone.inside else -1.0
+        zone.after = crossing_time(
+            None, border, sense, x, y, ball.vx, ball.vy, gx, gy, now == 0.0, ball.slack, now, ball.end_after
+        )
 
 
 @function
-def meet_paddle(
-    ball: Record, paddle: Record, rail: Record, extent: float, gx: Feature, gy: Feature
+def meet_part(
+    ball: Record, motion: Record, part: Record, turn: int, leaves_after: float, extent: float, gx: Feature, gy: Feature
 ) -> tuple[float, float]:
-    """Instant at which the ball hits the paddle while both keep their present motion: (hi, lo), inf if not.
+    """Instant at which the ball hits a part while both keep their present motion: (hi, lo), inf if not.
 
-    In the paddle's frame the ball flies as ever and the paddle is a standing capsule.
+    leaves_after: duration [s] after which, from the flight's start, the ball is out of the part's reach.
+    In the frame of a part that slides the ball flies as ever, and the part is a standing capsule.
     """
-    if before(ball.hi, ball.lo, paddle.hi, paddle.lo):
-        hi, lo = paddle.hi, paddle.lo
+    if before(ball.hi, ball.lo, motion.hi, motion.lo):
+        hi, lo = motion.hi, motion.lo
     else:
         hi, lo = ball.hi, ball.lo
     t = since(hi, lo, ball.hi, ball.lo)
-    stop_hi, stop_lo = stop_instant(paddle, rail)
-    horizon = min(ball.end_after - t, since(stop_hi, stop_lo, hi, lo))
-    offset = rail_offset(paddle, hi, lo)
-    after = capsule_time(
-        moved(ball.x, ball.vx, gx, t) - (rail.x + offset * rail.ux),
-        moved(ball.y, ball.vy, gy, t) - (rail.y + offset * rail.uy),
-        sped(ball.vx, gx, t) - paddle.velocity * rail.ux,
-        sped(ball.vy, gy, t) - paddle.velocity * rail.uy,
-        gx, gy, rail.ux, rail.uy, rail.half_width, rail.reach,
-        touch_tolerance(extent, ball.vx, ball.vy, gx, gy, t), horizon,
-    )  # fmt: skip
+    stop_hi, stop_lo = stop_instant(motion, part)
+    horizon = min(min(ball.end_after, leaves_after) - t, since(stop_hi, stop_lo, hi, lo))
+    x, y, ux, uy = core_at(part, motion, turn, hi, lo)
+    px, py = moved(ball.x, ball.vx, gx, t) - x, moved(ball.y, ball.vy, gy, t) - y
+    vx, vy = sped(ball.vx, gx, t), sped(ball.vy, gy, t)
+    slack = touch_tolerance(extent, ball.vx, ball.vy, gx, gy, t)
+    if turn != 0 and motion.velocity != 0.0:
+        rate = turn * motion.velocity
+        after = turning_time(px, py, vx, vy, gx, gy, ux, uy, part.front, part.reach, rate, slack, horizon)
+    else:
+        if turn == 0:
+            vx, vy = vx - motion.velocity * ux, vy - motion.velocity * uy
+        after = capsule_time(px, py, vx, vy, gx, gy, ux, uy, part.back, part.front, part.reach, slack, horizon)
     if after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
 
 
 @function
-def plan_paddles(
-    ball: Record,
-    rails: Table,
-    paddles: Table,
-    zones: Table,
-    disabled: Table,
-    w: int,
-    k: int,
-    scene: int,
-    count: int,
-    extent: float,
-    gx: Feature,
-    gy: Feature,
-) -> None:
-    """Search the paddles in whose zone the ball is, and set which one it hits first, and when."""
+def plan_meetings(
+    ball: Record, state: State, tables: Tables, motions: Table, parts: Table, zones: Table, w: int, k: int, scene: int,
+    gx: Feature, gy: Feature,
+) -> None:  # fmt: skip
+    """Search the parts in whose zone the ball is, and set which one it hits first, and when."""
     ball.part_hi, ball.part_lo, ball.part_index = math.inf, 0.0, -1
-    if rails is None or paddles is None or zones is None:
+    if parts is None or motions is None or zones is None:
         return
-    for m in range(count):
-        if zones[w, k, m].inside and not is_off(disabled, w, rails[scene, m].element):
-            hi, lo = meet_paddle(ball, paddles[w, m], rails[scene, m], extent, gx, gy)
-            if before(hi, lo, ball.part_hi, ball.part_lo):
-                ball.part_hi, ball.part_lo, ball.part_index = hi, lo, m
+    head = tables.scenes[scene]
+    for m in range(head.parts):
+        if m == ball.rides or not zones[w, k, m].inside or is_off(state.disabled, w, parts[scene, m].element):
+            continue
+        turn = turn_of(tables.turns, scene, m)
+        leaves_after = zones[w, k, m].after
+        hi, lo = meet_part(ball, motions[w, m], parts[scene, m], turn, leaves_after, head.extent, gx, gy)
+        if before(hi, lo, ball.part_hi, ball.part_lo):
+            ball.part_hi, ball.part_lo, ball.part_index = hi, lo, m
+
+
+@function
+def way_off_part(
+    ball: Record, motions: Table, parts: Table, turns: Table, w: int, scene: int, gx: Feature, gy: Feature
+) -> float:
+    """Duration after which a ball that slides on a part comes to an end of its straight side; inf if it does not."""
+    if motions is None or parts is None:
+        return math.inf
+    part, motion = parts[scene, ball.rides], motions[w, ball.rides]
+    turn = turn_of(turns, scene, ball.rides)
+    x, y, ux, uy = core_at(part, motion, turn, ball.hi, ball.lo)
+    speed = motion.velocity if turn == 0 else 0.0
+    along = (ball.x - x) * ux + (ball.y - y) * uy
+    rate = (ball.vx - speed * ux) * ux + (ball.vy - speed * uy) * uy
+    pull, back = dot(gx, gy, ux, uy), dot(gx, gy, -ux, -uy)
+    return min(falling_time(along - part.back, False, rate, pull), falling_time(part.front - along, False, -rate, back))

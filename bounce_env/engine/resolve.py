@@ -10,12 +10,16 @@ import math
 from bounce_env.engine.instant import before, later
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.law import bounce, capped
-from bounce_env.engine.layout import BOUNCE, State, Tables
+from bounce_env.engine.layout import BOUNCE, CRUSHED, State, Tables
 from bounce_env.engine.tolerances import (
+    ALIGNED,
     BOUNCES_AT_ONE_INSTANT,
+    CLEARANCE,
     CORNER,
+    OPPOSED,
     PRESSING,
     ROLLING,
+    SQUEEZES,
     ULPS_OF_LENGTH,
     ULPS_OF_SPEED,
 )
@@ -24,7 +28,8 @@ from bounce_env.engine.tolerances import (
 @function
 def slow_speed(ball: Record, touch: Record) -> float:
     """Closing slower than this [m/s] is no hit: the rounding of the ball's velocity, and of a curve's normal."""
-    return (ULPS_OF_SPEED + ball.slack * abs(touch.bend)) * (abs(ball.vx) + abs(ball.vy))
+    speed = abs(ball.vx) + abs(ball.vy) + (abs(touch.ux) + abs(touch.uy))
+    return (ULPS_OF_SPEED + ball.slack * abs(touch.bend)) * speed
 
 
 @function
@@ -78,6 +83,17 @@ def along_speed(ball: Record, touch: Record) -> float:
 
 
 @function
+def take_vague(ball: Record, touches: Table, w: int) -> None:
+    """Take from the velocity what closes on a surface only since another ball's push missed its direction."""
+    for i in range(ball.touched):
+        touch = touches[w, i]
+        closing = closing_speed(ball, touch)
+        if 0.0 < closing <= ball.vague:
+            ball.vx, ball.vy = ball.vx + closing * touch.nx, ball.vy + closing * touch.ny
+    ball.vague = 0.0
+
+
+@function
 def fastest_closing(ball: Record, touches: Table, w: int) -> tuple[int, float]:
     """Of the touched surfaces the one closed on fastest, ties by element: (index, speed), -1 if none is."""
     best, index, element = 0.0, -1, -1
@@ -110,12 +126,15 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
         if ball.touched > 1 and _is_damped(state, tables, w, k, i, closing):
             break
         kicked = _bounce_from(state, tables, w, k, i, closing, noise, ledger)
+        if tables.parts is not None and _is_crushed(ball, state.touches[w, i], tables.scenes[state.worlds[w].scene]):
+            ball.status = CRUSHED
+            return -1, -1, ball.vx, ball.vy
         if ball.touched == 1:
             return (-1 if kicked else i), -1, ball.vx, ball.vy
     i, _ = fastest_closing(ball, state.touches, w)
     vx, vy = ball.vx, ball.vy
-    if i >= 0:
-        _project(ball, state.touches, w, i)
+    if i >= 0 and not _project(ball, state.touches, w, i):
+        ball.status = CRUSHED
     return -1, i, vx, vy
 
 
@@ -129,6 +148,8 @@ def _is_damped(state: State, tables: Tables, w: int, k: int, i: int, closing: fl
     touch = state.touches[w, i]
     material = tables.elements[world.scene, touch.element]
     press = press_of(ball, touch)
+    if touch.moves or touch.ux * touch.nx + touch.uy * touch.ny != 0.0:
+        return False
     if press == 0.0 or (material.kick > 0.0 and closing > material.kick_threshold):
         return False
     return closing < head.rest_speed or is_soft(closing, press, CORNER * head.extent)
@@ -142,7 +163,9 @@ def _bounce_from(
     ball, world, touch = state.balls[w, k], state.worlds[w], state.touches[w, i]
     head, material = tables.scenes[world.scene], tables.elements[world.scene, touch.element]
     rebound, f = material.b * closing, material.f
-    if tables.gravity is not None or touch.bend < 0.0:
+    if touch.moves and closing <= touch.least:
+        rebound, f = max(rebound, touch.least), (1.0 if head.rest_speed > 0.0 and f > 0.0 else f)
+    elif tables.gravity is not None or touch.bend < 0.0:
         rebound, f = _softened(ball, touch, head, material, closing, rebound, f)
     kicked = material.kick > 0.0 and closing > material.kick_threshold
     if kicked and _is_ready(state.cooling, ball, w, touch.element, material.cooldown):
@@ -160,6 +183,35 @@ def _bounce_from(
     world.speed_capped += over
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
     return kicked
+
+
+@function
+def _is_crushed(ball: Record, touch: Record, head: Record) -> bool:
+    """Take note of a bounce, and say whether the ball is caught between a closing part and what opposes it.
+
+    It is when, not having come further than a clearance from where the part first struck it, it has gone to and fro so
+    often, and is struck again.
+    """
+    strikes = touch.part >= 0 and touch.ux * touch.nx + touch.uy * touch.ny > 0.0
+    clearance = CLEARANCE * head.extent
+    dx, dy = ball.x - ball.sx, ball.y - ball.sy
+    caught = ball.struck >= 0 and dx * dx + dy * dy <= clearance * clearance
+    if caught and touch.nx * ball.snx + touch.ny * ball.sny < -OPPOSED:
+        ball.squeezes += 1
+    elif caught and strikes and touch.part == ball.struck:
+        ball.snx, ball.sny, ball.sux, ball.suy = touch.nx, touch.ny, touch.ux, touch.uy
+        return ball.squeezes >= SQUEEZES
+    elif strikes:
+        _note_strike(ball, touch)
+    elif not caught:
+        ball.struck = -1
+    return False
+
+
+@function
+def _note_strike(ball: Record, touch: Record) -> None:
+    ball.struck, ball.squeezes, ball.sx, ball.sy = touch.part, 0, ball.x, ball.y
+    ball.snx, ball.sny, ball.sux, ball.suy = touch.nx, touch.ny, touch.ux, touch.uy
 
 
 @function
@@ -203,10 +255,11 @@ def _is_ready(cooling: Table, ball: Record, w: int, element: int, cooldown: floa
 
 
 @function
-def _project(ball: Record, touches: Table, w: int, first: int) -> None:
+def _project(ball: Record, touches: Table, w: int, first: int) -> bool:
     """Take from the velocity what closes on any touched surface: along one of them where the others allow, else all.
 
-    The one closed on fastest (`first`) is tried first.
+    The one closed on fastest (`first`) is tried first. Returns False where a part closes on the ball and nothing lets
+    it get away.
     """
     vx, vy = ball.vx, ball.vy
     for n in range(ball.touched):
@@ -214,14 +267,51 @@ def _project(ball: Record, touches: Table, w: int, first: int) -> None:
         ball.vx, ball.vy = vx, vy
         closing = closing_speed(ball, touch)
         ball.vx, ball.vy = vx + closing * touch.nx, vy + closing * touch.ny
-        allowed = closing > 0.0
-        for j in range(ball.touched):
-            # Seen from the velocity that the ball had: what is left of it may be all rounding.
-            noise = slow_speed(ball, touches[w, j]) + ULPS_OF_SPEED * (abs(vx) + abs(vy))
-            allowed = allowed and closing_speed(ball, touches[w, j]) <= noise
-        if allowed:
-            return
+        if closing > 0.0 and _is_allowed(ball, touches, w, vx, vy):
+            return True
     ball.vx, ball.vy = touches[w, first].ux, touches[w, first].uy
+    striker = _striker(ball, touches, w)
+    if striker < 0:
+        return True
+    for i in range(ball.touched):
+        for j in range(i):
+            if _squeeze_out(ball, touches[w, i], touches[w, j]) and _is_allowed(ball, touches, w, vx, vy):
+                return True
+    _note_strike(ball, touches[w, striker])
+    return False
+
+
+@function
+def _is_allowed(ball: Record, touches: Table, w: int, vx: float, vy: float) -> bool:
+    """Whether a ball of velocity (vx, vy) [m/s] before closes on nothing that it touches now."""
+    allowed = True
+    for j in range(ball.touched):
+        # Seen from the velocity that the ball had: what is left of it may be all rounding.
+        noise = slow_speed(ball, touches[w, j]) + ULPS_OF_SPEED * (abs(vx) + abs(vy))
+        allowed = allowed and closing_speed(ball, touches[w, j]) <= noise
+    return allowed
+
+
+@function
+def _striker(ball: Record, touches: Table, w: int) -> int:
+    """The touched part that moves fastest towards the ball; -1 if none does."""
+    best, index = 0.0, -1
+    for i in range(ball.touched):
+        towards = touches[w, i].ux * touches[w, i].nx + touches[w, i].uy * touches[w, i].ny
+        if towards > best:
+            best, index = towards, i
+    return index
+
+
+@function
+def _squeeze_out(ball: Record, one: Record, other: Record) -> bool:
+    """Let the ball keep just ahead of two surfaces, along both; False where they oppose each other too much for it."""
+    turn = one.nx * other.ny - one.ny * other.nx
+    if one.nx * other.nx + one.ny * other.ny < -OPPOSED or abs(turn) <= ALIGNED:
+        return False
+    a, b = one.ux * one.nx + one.uy * one.ny, other.ux * other.nx + other.uy * other.ny
+    ball.vx, ball.vy = (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
+    return True
 
 
 @function

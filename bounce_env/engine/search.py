@@ -18,14 +18,16 @@ from bounce_env.engine.layout import (
     NEXT_SENSOR,
     NEXT_ZONE,
     OFF_END,
+    OFF_PART,
     ON_ARC,
     ON_CIRCLE,
     ON_FACE,
     RESOLVE,
+    RIDING,
     State,
     Tables,
 )
-from bounce_env.engine.parts import is_off, plan_paddles, plan_zones
+from bounce_env.engine.parts import is_off, plan_meetings, plan_zones, way_off_part
 from bounce_env.engine.sensing import next_crossing
 from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 
@@ -54,6 +56,12 @@ def is_gate(gates: Table, scene: int, i: int) -> bool:
     if gates is None:
         return False
     return gates[scene, i] != 0
+
+
+@function
+def is_sliding(ball: Record) -> bool:
+    """Whether a ball slides on a wall or on the straight side of a part."""
+    return ball.contact >= 0 or ball.contact == RIDING
 
 
 @function
@@ -108,7 +116,7 @@ def first_face(
         face = faces[scene, i]
         if is_off(disabled, w, face.element):
             continue
-        if ball.contact >= 0 and (i == ball.contact or _is_level(ball, face, gx, gy)):
+        if is_sliding(ball) and (i == ball.contact or _is_level(ball, face, gx, gy)):
             continue
         x, y, side = ball.x - face.x, ball.y - face.y, side_on(sides, w, k, i)
         if is_gate(gates, scene, i):
@@ -127,7 +135,7 @@ def first_face(
 @function
 def _slides_over(ball: Record, face: Record, nx: float, ny: float, gx: Feature, gy: Feature, t: float) -> bool:
     """Whether a point that slides on a wall with normal (nx, ny) passes, after `t` seconds, an end beneath it."""
-    if ball.contact < 0 or face.reach > 0.0:
+    if not is_sliding(ball) or face.reach > 0.0:
         return False
     along = (moved(ball.x, ball.vx, gx, t) - face.x) * face.ux + (moved(ball.y, ball.vy, gy, t) - face.y) * face.uy
     rise = face.ux * nx + face.uy * ny
@@ -137,7 +145,7 @@ def _slides_over(ball: Record, face: Record, nx: float, ny: float, gx: Feature, 
 @function
 def _slides_past(ball: Record, nx: float, ny: float, x: float, y: float, reach: float) -> bool:
     """Whether a ball that slides on a wall with normal (nx, ny) just touches a circle that has it at (x, y)."""
-    return ball.contact >= 0 and x * nx + y * ny >= reach - ball.slack
+    return is_sliding(ball) and x * nx + y * ny >= reach - ball.slack
 
 
 @function
@@ -240,7 +248,7 @@ def first_end(
         t = _way_to_end(ball, faces[scene, ball.contact], gx, gy)
         if t < best:
             best, index = t, ball.contact
-    elif sides is not None:
+    elif sides is not None and ball.contact != RIDING:
         for i in range(count):
             face = faces[scene, i]
             if is_off(disabled, w, face.element) or not _is_level(ball, face, gx, gy):
@@ -270,11 +278,8 @@ def _way_to_end(ball: Record, face: Record, gx: Feature, gy: Feature) -> float:
 def plan_parts(state: State, tables: Tables, w: int, k: int) -> None:
     """Search the parts in whose zone a ball is, and set its next event."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
     gx, gy = pull(tables.gravity, ball)
-    plan_paddles(
-        ball, tables.rails, state.paddles, state.zones, state.disabled, w, k, scene, head.paddles, head.extent, gx, gy
-    )
+    plan_meetings(ball, state, tables, state.motions, tables.parts, state.zones, w, k, scene, gx, gy)
     schedule(ball)
 
 
@@ -296,6 +301,8 @@ def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
     head = tables.scenes[scene]
     gx, gy = pull(tables.gravity, ball)
     nx, ny = wall_normal(state, tables.faces, w, k, ball.contact)
+    if ball.contact == RIDING:
+        nx, ny = ball.nx, ball.ny
     horizon = time_in_scene(head.extent, ball.x, ball.y, ball.vx, ball.vy, gx, gy)
     after, face = first_face(
         ball,
@@ -325,8 +332,13 @@ def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
     after, end = first_end(ball, tables.faces, head.faces, state.face_sides, state.disabled, w, scene, gx, gy, after)
     if end >= 0:
         ball.hit_kind, ball.hit_index = OFF_END, end
-    ball.end_after = after
     met = face >= 0 or circle >= 0 or arc >= 0 or end >= 0
+    if ball.contact == RIDING:
+        off = way_off_part(ball, state.motions, tables.parts, tables.turns, w, scene, gx, gy)
+        if off < after:
+            after, met = off, True
+            ball.hit_kind, ball.hit_index = OFF_PART, ball.rides
+    ball.end_after = after
     ball.hit_after = after if met else math.inf
 
 
@@ -336,7 +348,7 @@ def plan_rest(state: State, tables: Tables, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     gx, gy = pull(tables.gravity, ball)
     ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(state, tables, w, k, gx, gy, -1.0, -1, -1)
-    plan_zones(ball, state.zones, tables.rails, tables.scenes[scene].paddles, w, k, scene, gx, gy, 0.0)
+    plan_zones(ball, state, tables, state.zones, tables.parts, w, k, scene, gx, gy, 0.0)
     plan_parts(state, tables, w, k)
 
 

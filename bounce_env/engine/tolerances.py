@@ -23,6 +23,9 @@ START_OVERLAP = 1e-12  # (dimensionless, times metres)
 # Bounded-acceleration advancement needs 3 to 10 steps; a search that has taken so many goes on as a polynomial.
 SEARCH_STEPS = 24
 
+# A ball that a search has brought nearer than this share of its reach to a turning part has come to it.
+SEARCH_ENDS = 1e-9
+
 # Bounces resolved at one instant before the ball is left to the next event (and so to the event budget).
 BOUNCES_AT_ONE_INSTANT = 32
 
@@ -49,6 +52,12 @@ BALANCE = 0.01 * ROLLING
 # A ball between several surfaces is taken to have come to rest when it rises no more than so many tolerances of length:
 # the smallest hop on a curve is 16 of them high.
 CORNER = 64.0
+
+# A ball that a closing part has struck and something opposite to it has thrown back so often, within this share of the
+# scene's extent, is crushed: 6e-5 of it, a tenth of a millimetre on a table.
+CLEARANCE = 2.0**-14
+SQUEEZES = 8
+OPPOSED = 0.5  # how far normals must oppose each other for that: by 120 degrees
 
 # Normals that carry a resting ball may miss the direction of gravity by this much.
 ALIGNED = 1e-9

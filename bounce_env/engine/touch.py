@@ -9,22 +9,28 @@ from bounce_env.engine.arc import in_span
 from bounce_env.engine.impact import beside
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import State, Tables
-from bounce_env.engine.parts import is_off, rail_offset
+from bounce_env.engine.parts import core_at, is_off, turn_of
 from bounce_env.engine.search import is_gate, side_on
+from bounce_env.engine.tolerances import ROLLING
 
 
 @function
-def on_capsule(x: float, y: float, ux: float, uy: float, half_width: float) -> tuple[float, float, float]:
-    """From the nearest point of a capsule's core about the origin to (x, y): unit normal (nx, ny) and distance [m]."""
+def on_capsule(
+    x: float, y: float, ux: float, uy: float, back: float, front: float
+) -> tuple[float, float, float, float]:
+    """From the nearest point of a capsule's core to (x, y): unit normal (nx, ny), distance [m], and where it is.
+
+    The core runs from `back` to `front` [m] along the unit (ux, uy) through the origin; where is along that.
+    """
     along = x * ux + y * uy
-    if abs(along) <= half_width:
+    if back <= along <= front:
         height = y * ux - x * uy
         facing = 1.0 if height >= 0.0 else -1.0
-        return -facing * uy, facing * ux, abs(height)
-    nearest = math.copysign(half_width, along)
+        return -facing * uy, facing * ux, abs(height), along
+    nearest = front if along > front else back
     dx, dy = x - nearest * ux, y - nearest * uy
     distance = math.sqrt(dx * dx + dy * dy)
-    return dx / distance, dy / distance, distance
+    return dx / distance, dy / distance, distance, nearest
 
 
 @function
@@ -38,7 +44,18 @@ def collect_touches(state: State, tables: Tables, w: int, k: int) -> None:
     )
     _touch_circles(ball, tables.circles, head.circles, state.touches, state.disabled, w, scene)
     _touch_arcs(ball, tables.arcs, head.arcs, state.arc_sides, state.touches, state.disabled, w, k, scene)
-    _touch_paddles(ball, tables.rails, state.paddles, head.paddles, state.touches, state.disabled, w, scene)
+    _touch_parts(
+        ball,
+        tables.parts,
+        state.motions,
+        tables.turns,
+        head.parts,
+        state.touches,
+        state.disabled,
+        w,
+        scene,
+        head.rest_speed,
+    )
 
 
 @function
@@ -47,7 +64,7 @@ def _add(ball: Record, touches: Table, w: int, nx: float, ny: float, bend: float
         return
     touch = touches[w, ball.touched]
     touch.nx, touch.ny, touch.ux, touch.uy = nx, ny, 0.0, 0.0
-    touch.bend, touch.element, touch.face, touch.moves = bend, element, face, 0
+    touch.bend, touch.element, touch.face, touch.part, touch.moves = bend, element, face, -1, 0
     ball.touched += 1
 
 
@@ -80,7 +97,12 @@ def _touch_faces(
         # A ball may be half-way through a one-way wall.
         if is_gate(gates, scene, i) and (facing < 0.0 or height < face.reach - ball.slack):
             continue
+        listed = ball.touched
         _add(ball, touches, w, -facing * face.uy, facing * face.ux, 0.0, face.element, i)
+        if ball.touched > listed:
+            along = dx * face.ux + dy * face.uy
+            touches[w, listed].along = along if facing > 0.0 else face.length - along
+            touches[w, listed].length = face.length
 
 
 @function
@@ -124,20 +146,47 @@ def _touch_arcs(
 
 
 @function
-def _touch_paddles(
-    ball: Record, rails: Table, paddles: Table, count: int, touches: Table, disabled: Table, w: int, scene: int
+def _touch_parts(
+    ball: Record,
+    parts: Table,
+    motions: Table,
+    turns: Table,
+    count: int,
+    touches: Table,
+    disabled: Table,
+    w: int,
+    scene: int,
+    rest_speed: float,
 ) -> None:
-    if rails is None:
+    if parts is None or motions is None:
         return
     for m in range(count):
-        rail, paddle = rails[scene, m], paddles[w, m]
-        offset = rail_offset(paddle, ball.hi, ball.lo)
-        dx, dy = ball.x - (rail.x + offset * rail.ux), ball.y - (rail.y + offset * rail.uy)
-        nx, ny, distance = on_capsule(dx, dy, rail.ux, rail.uy, rail.half_width)
-        if distance > rail.reach + ball.slack or is_off(disabled, w, rail.element):
+        part, motion, turn = parts[scene, m], motions[w, m], turn_of(turns, scene, m)
+        x, y, ux, uy = core_at(part, motion, turn, ball.hi, ball.lo)
+        dx, dy = ball.x - x, ball.y - y
+        nx, ny, distance, nearest = on_capsule(dx, dy, ux, uy, part.back, part.front)
+        if distance > part.reach + ball.slack or is_off(disabled, w, part.element):
             continue
-        listed = ball.touched
-        _add(ball, touches, w, nx, ny, 1.0 / rail.reach, rail.element, -1)
-        if ball.touched > listed:
+        spin = turn * motion.velocity
+        if turn != 0:
+            vx, vy = -spin * (nearest * uy + part.radius * ny), spin * (nearest * ux + part.radius * nx)
+            reach = part.front + part.reach
+            pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+            least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * reach) * reach))
+        else:
+            vx, vy, least = motion.velocity * ux, motion.velocity * uy, 0.0
+        # Where the straight side passes into the round end both are touched.
+        for straight in (True, False):
+            if straight and not part.back < nearest < part.front:
+                continue
+            if not straight and part.back + ball.slack < nearest < part.front - ball.slack:
+                continue
+            listed = ball.touched
+            _add(ball, touches, w, nx, ny, 0.0 if straight else 1.0 / part.reach, part.element, -1)
+            if ball.touched == listed:
+                return
             touch = touches[w, listed]
-            touch.ux, touch.uy, touch.moves = paddle.velocity * rail.ux, paddle.velocity * rail.uy, 1
+            touch.part, touch.ux, touch.uy, touch.least = m, vx, vy, least
+            touch.moves = 1 if spin != 0.0 else 0
+            touch.length = part.front - part.back
+            touch.along = nearest - part.back if ux * ny > uy * nx else part.front - nearest

@@ -4,9 +4,9 @@ import math
 
 from bounce_env.engine.flight import moved, sped
 from bounce_env.engine.instant import since
-from bounce_env.engine.jit import Table, function, kernel
+from bounce_env.engine.jit import Record, Table, function, kernel
 from bounce_env.engine.layout import OUT, Array, State, Tables
-from bounce_env.engine.parts import rail_offset
+from bounce_env.engine.parts import core_at, turn_of
 from bounce_env.engine.search import pull
 
 
@@ -27,20 +27,23 @@ def ball_now(state: State, tables: Tables, w: int, k: int) -> tuple[float, float
 
 
 @function
-def paddle_now(state: State, tables: Tables, paddles: Table, rails: Table, w: int, m: int) -> tuple[float, float]:
-    """Where the centre of paddle `m` is now: (x, y) [m]; (nan, nan) where there are no paddles."""
-    if paddles is None or rails is None:
-        return math.nan, math.nan
-    world = state.worlds[w]
-    rail = rails[world.scene, m]
-    offset = rail_offset(paddles[w, m], world.time_hi, world.time_lo)
-    return rail.x + offset * rail.ux, rail.y + offset * rail.uy
+def core_now(
+    motions: Table, parts: Table, turns: Table, w: int, world: Record, m: int
+) -> tuple[float, float, float, float]:
+    """Where the two ends of part `m`'s core are now: x, y, x, y [m]; NaN where there are no parts."""
+    if motions is None or parts is None:
+        return math.nan, math.nan, math.nan, math.nan
+    part = parts[world.scene, m]
+    x, y, ux, uy = core_at(part, motions[w, m], turn_of(turns, world.scene, m), world.time_hi, world.time_lo)
+    return x + part.back * ux, y + part.back * uy, x + part.front * ux, y + part.front * uy
 
 
 @kernel
-def view(state: State, tables: Tables, w: int, balls: Array, paddles: Array) -> None:
-    """Write the balls (k, 4): x, y [m], vx, vy [m/s], and the centres of the paddles (m, 2) [m] of world `w`."""
+def view(state: State, tables: Tables, w: int, balls: Array, cores: Array) -> None:
+    """Write the balls (k, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of world `w`."""
     for k in range(balls.shape[0]):
         balls[k, 0], balls[k, 1], balls[k, 2], balls[k, 3] = ball_now(state, tables, w, k)
-    for m in range(paddles.shape[0]):
-        paddles[m, 0], paddles[m, 1] = paddle_now(state, tables, state.paddles, tables.rails, w, m)
+    for m in range(cores.shape[0]):
+        cores[m, 0], cores[m, 1], cores[m, 2], cores[m, 3] = core_now(
+            state.motions, tables.parts, tables.turns, w, state.worlds[w], m
+        )

@@ -6,29 +6,25 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.drive import command, disturb, free_all, place
 from bounce_env.engine.instant import later
-from bounce_env.engine.jit import kernel
+from bounce_env.engine.jit import from_python, kernel
 from bounce_env.engine.layout import LEDGER, OUT, State, Tables, borrow_state, borrow_tables, new_state
-from bounce_env.engine.loop import (
-    LEDGER_FULL,
-    clear_hits,
-    command,
-    disturb,
-    place,
-    restart,
-    resume,
-    run,
-)
-from bounce_env.engine.overlap import cleared, rail_middles, rail_points
+from bounce_env.engine.loop import LEDGER_FULL, clear_hits, restart, resume, run
+from bounce_env.engine.overlap import Core, apart, cleared, cores_at_start
 from bounce_env.engine.pack import pack, switch_ends
+from bounce_env.engine.parts import offset_at
 from bounce_env.engine.snapshot import from_bytes, to_bytes
 from bounce_env.engine.view import view
-from bounce_env.scene import Field, Paddle, Scene, Sensor
+from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor
 
 Floats = npt.NDArray[np.float64]
 
 MAX_EVENTS = 1_000_000
+MAX_BALLS = 64
 _LEDGER_ROWS = 1024
+
+_offset_at = from_python(offset_at)
 
 
 @kernel
@@ -56,9 +52,19 @@ def _advance(state: State, tables: Tables, hi: float, lo: float, max_events: int
 
 
 @kernel
-def _push(state: State, tables: Tables, k: int, dvx: float, dvy: float) -> None:
+def _push(state: State, tables: Tables, dvx: float, dvy: float) -> None:
     state, tables = borrow_state(state), borrow_tables(tables)
-    disturb(state, tables, 0, k, 1.0, dvx, dvy)
+    for k in range(state.balls.shape[1]):
+        disturb(state, tables, 0, k, 1.0, dvx, dvy)
+
+
+@kernel
+def _switched(state: State, tables: Tables) -> None:
+    """Resolve every ball anew: an element has been switched on or off."""
+    state, tables = borrow_state(state), borrow_tables(tables)
+    free_all(state, tables, state.motions, tables.parts, 0)
+    for k in range(state.balls.shape[1]):
+        disturb(state, tables, 0, k, 1.0, 0.0, 0.0)
 
 
 @kernel
@@ -68,40 +74,45 @@ def _place(state: State, tables: Tables, k: int, x: float, y: float, vx: float, 
 
 
 @kernel
-def _command(state: State, tables: Tables, paddle: int, velocity: float) -> None:
+def _command(state: State, tables: Tables, part: int, velocity: float) -> None:
     state, tables = borrow_state(state), borrow_tables(tables)
-    command(state, tables, state.paddles, tables.rails, 0, paddle, velocity)
+    command(state, tables, state.motions, tables.parts, 0, part, velocity)
 
 
 class World:
-    """One ball in one scene, advanced exactly from event to event.
+    """Balls in one scene, advanced exactly from event to event.
 
-    scene: what the world is made of. balls: how many balls; 1 in this release (balls do not yet meet each other).
+    scene: what the world is made of. balls: how many balls, 1 or more, all alike.
     Before the first `reset` there is no ball in play, and every other method raises RuntimeError.
 
-    Not part of this release: contact with moving parts. A ball that comes to lie on a paddle rolls on it in small hops;
-    one squeezed between closing parts ends with status BUDGET.
+    A ball rolls on a curved surface, on a part that turns and on another ball in small hops; on walls and on parts that
+    stand or slide it rests and slides. Balls of no radius do not meet each other.
     """
 
     def __init__(self, scene: Scene, balls: int = 1) -> None:
         if not isinstance(scene, Scene):
             raise TypeError(f"scene: must be a Scene, not {scene!r}; load_scene reads one from a file")
-        if balls != 1:
-            raise ValueError(f"balls = {balls!r}: must be 1 in this release")
+        if isinstance(balls, bool) or not isinstance(balls, int | np.integer) or not 1 <= balls <= MAX_BALLS:
+            raise ValueError(f"balls = {balls!r}: must be a whole number from 1 to {MAX_BALLS}")
         self.scene = scene
-        self._tables, self._state = _new(scene)
-        self._paddles = [i for i, e in enumerate(scene.elements) if isinstance(e, Paddle)]
+        self._balls = int(balls)
+        self._tables, self._state = _new(scene, self._balls)
+        self._parts = scene.parts
         self._started = False
 
     def reset(self, *, position: npt.ArrayLike, velocity: npt.ArrayLike) -> None:
-        """Time 0, parts at rest in the middle of their rails, the ball at `position` [m] with `velocity` [m/s].
+        """Time 0, parts where they start, the balls at `position` [m] with `velocity` [m/s].
 
-        Both are (x, y) or an array of shape (1, 2). A ball that overlaps an element by no more than round-off is moved
-        to its surface. Raises ValueError for another shape, for NaN or infinity, and where the ball overlaps an element
-        (which it names); the world is then as before.
+        Both are of shape (balls, 2), or (x, y) for one ball. A paddle starts in the middle of its rail, a flipper at
+        its `rest_angle`, a moving bumper at its `center`. A ball that overlaps an element by no more than round-off is
+        moved to its surface. Raises ValueError for another shape, for NaN or infinity, and where a ball overlaps an
+        element (which it names) or another ball; the world is then as before.
         """
-        at, speed = _rows("position", position), _rows("velocity", velocity)
-        at[0] = cleared(self.scene, rail_middles(self.scene), float(at[0, 0]), float(at[0, 1]))
+        at, speed = self._rows("position", position), self._rows("velocity", velocity)
+        cores = cores_at_start(self.scene)
+        for k, (x, y) in enumerate(at.tolist()):
+            at[k] = cleared(self.scene, cores, x, y)
+        apart(self.scene, at)
         _reset(self._state, self._tables, at, speed)
         self._switch_ends()
         self._started = True
@@ -134,22 +145,27 @@ class World:
             pages.append(page[: world.rows].copy())
         return np.concatenate(pages)
 
-    def command(self, name: str, value: float) -> None:
-        """Let the paddle `name` move along its rail at `value` m/s from now until the next command.
+    def command(self, name: str, value: float | bool) -> None:
+        """Let the part `name` move otherwise from now until the next command.
 
-        Raises ValueError for a name that no paddle has, for NaN and infinity, and beyond the paddle's `max_speed`.
+        A paddle moves along its rail at `value` m/s. A flipper turns to its `active_angle` while `value` is True, and
+        back while it is False. A moving bumper goes on at `value` m/s, and turns back at the ends of its rail as ever.
+
+        Raises ValueError for a name that no part has, and for a value that it cannot take.
         """
         self._check_started()
-        names = {self.scene.elements[i].name: m for m, i in enumerate(self._paddles)}
-        if name not in names or not name:
-            raise ValueError(f"command: {name!r} must be one of the scene's paddles: {sorted(filter(None, names))}")
-        paddle = self.scene.elements[self._paddles[names[name]]]
-        assert isinstance(paddle, Paddle)
-        if not (math.isfinite(value) and abs(value) <= paddle.max_speed):
-            raise ValueError(
-                f"command {name!r} = {value!r}: must be finite and at most {paddle.max_speed!r} m/s either way"
-            )
-        _command(self._state, self._tables, names[name], float(value))
+        names = {part.name: m for m, (_, part) in enumerate(self._parts) if part.name}
+        if name not in names:
+            raise ValueError(f"command: {name!r} must be one of the scene's parts: {sorted(names)}")
+        part = self._parts[names[name]][1]
+        if isinstance(part, Flipper):
+            if not isinstance(value, bool | np.bool_):
+                raise ValueError(f"command {name!r} = {value!r}: must be True (pressed) or False (released)")
+            velocity = part.up_speed if value else -part.down_speed
+        else:
+            fastest = part.max_speed if isinstance(part, Paddle) else part.speed
+            velocity = _speed(name, value, fastest)
+        _command(self._state, self._tables, names[name], velocity)
 
     def enable(self, name: str, on: bool) -> None:
         """Switch an element on or off: one that is off is not hit, and a ball that it supports falls. On after `reset`.
@@ -170,66 +186,72 @@ class World:
         index = bouncing[name]
         if bool(disabled[0, index]) != on:
             return
-        balls, paddles = self._now()
-        if on and self._state.balls[0, 0].status != OUT:
+        if on:
             others = set(range(len(self.scene.elements))) - {index}
-            centres = {i: (float(x), float(y)) for i, (x, y) in zip(self._paddles, paddles, strict=True)}
-            cleared(self.scene, centres, float(balls[0, 0]), float(balls[0, 1]), disabled=others)
+            for (x, y), status in zip(self.position.tolist(), self.status.tolist(), strict=True):
+                if status != OUT:
+                    cleared(self.scene, self._cores(), x, y, disabled=others)
         disabled[0, index] = not on
         self._switch_ends()
-        _push(self._state, self._tables, 0, 0.0, 0.0)
+        _switched(self._state, self._tables)
 
     def push(self, change: npt.ArrayLike) -> None:
         """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now. Raises ValueError for NaN and infinity."""
         self._check_started()
-        ((dvx, dvy),) = _rows("push", change)
-        _push(self._state, self._tables, 0, float(dvx), float(dvy))
+        rows = np.array(change, np.float64)
+        if rows.shape != (2,) or not np.isfinite(rows).all():
+            raise ValueError(f"push = {change!r}: must be (dvx, dvy), finite")
+        _push(self._state, self._tables, float(rows[0]), float(rows[1]))
 
     def replace(self, scene: Scene) -> None:
-        """Go on in another scene: time, ball and its velocity stay; a paddle of the same name keeps place and command.
+        """Go on in another scene: time, balls and their velocities stay; a part of the same name and kind keeps its
+        place and command.
 
-        The place is the distance along its rail, as far as the new one reaches. All elements are on. Raises ValueError
-        where the ball has another size or overlaps an element of the new scene; the world is then as before.
+        The place is the distance or angle from its first stop, as far as the new way reaches. All elements are on.
+        Raises ValueError where the balls have another size or one overlaps an element of the new scene; the world is
+        then as before.
         """
         self._check_started()
         if not isinstance(scene, Scene):
             raise TypeError(f"scene: must be a Scene, not {scene!r}")
         if scene.ball.radius != self.scene.ball.radius:
             raise ValueError(f"ball.radius = {scene.ball.radius!r}: must be {self.scene.ball.radius!r} as before")
-        tables, state = _new(scene)
+        tables, state = _new(scene, self._balls)
         old, new = self._state.worlds[0], state.worlds[0]
         for name in ("time_hi", "time_lo", "bounces", "speed_capped", "drag_hi", "drag_lo"):
             new[name] = old[name]
-        paddles = [i for i, e in enumerate(scene.elements) if isinstance(e, Paddle)]
-        commands = self._move_paddles(scene, paddles, state, tables)
-        (x, y, vx, vy), ball = self._now()[0][0], self._state.balls[0, 0]
-        if ball.status != OUT:
-            centres = rail_points(scene, {i: float(state.paddles[0, m].offset) for m, i in enumerate(paddles)})  # type: ignore[index]
-            x, y = cleared(scene, centres, float(x), float(y))
-        _place(state, tables, 0, x, y, vx, vy)
-        if ball.status == OUT:
-            state.balls[0, 0] = ball
-        for m, command_of in commands.items():
-            _command(state, tables, m, command_of)
-        self.scene, self._tables, self._state, self._paddles = scene, tables, state, paddles
+        commands = self._move_parts(scene, state, tables)
+        balls, cores = self._now()[0], np.empty((len(scene.parts), 4))
+        view(state, tables, 0, np.empty((0, 4)), cores)
+        for k, (x, y, vx, vy) in enumerate(balls.tolist()):
+            if self._state.balls[0, k].status != OUT:
+                x, y = cleared(scene, _cores_by_index(scene, cores), x, y)  # noqa: PLW2901
+            _place(state, tables, k, x, y, vx, vy)
+        out = self._state.balls["status"][0] == OUT
+        state.balls[0, out] = self._state.balls[0, out]
+        for m, velocity in commands.items():
+            _command(state, tables, m, velocity)
+        self.scene, self._tables, self._state, self._parts = scene, tables, state, scene.parts
 
-    def _move_paddles(self, scene: Scene, paddles: list[int], state: State, tables: Tables) -> dict[int, float]:
-        """Put the paddles of a new scene where those of the same name are; returns what is to be commanded."""
+    def _move_parts(self, scene: Scene, state: State, tables: Tables) -> dict[int, float]:
+        """Put the parts of a new scene where those of the same name are; returns what is to be commanded."""
         commands: dict[int, float] = {}
-        if state.paddles is None or tables.rails is None:
+        if state.motions is None or tables.parts is None:
             return commands
-        known = {self.scene.elements[i].name: m for m, i in enumerate(self._paddles) if self.scene.elements[i].name}
-        for m, i in enumerate(paddles):
-            paddle, rail = state.paddles[0, m], tables.rails[0, m]
-            paddle.offset = 0.5 * rail.span
-            paddle.hi, paddle.lo = state.worlds[0].time_hi, state.worlds[0].time_lo
-            before = known.get(scene.elements[i].name)
-            if before is not None and self._state.paddles is not None and self._tables.rails is not None:
-                was, on = self._state.paddles[0, before], self._tables.rails[0, before]
-                cx, cy = self._now()[1][before]
-                offset = (cx - on.x) * on.ux + (cy - on.y) * on.uy
-                paddle.offset = min(max(float(offset), 0.0), float(rail.span))
-                commands[m] = min(max(float(was.command), -float(rail.max_speed)), float(rail.max_speed))
+        known = {part.name: m for m, (_, part) in enumerate(self._parts) if part.name}
+        for m, (_, part) in enumerate(scene.parts):
+            motion, row = state.motions[0, m], tables.parts[0, m]
+            motion.offset, motion.velocity, motion.command = row.start, row.shuttle, row.shuttle
+            motion.hi, motion.lo = state.worlds[0].time_hi, state.worlds[0].time_lo
+            before = known.get(part.name)
+            if before is None or type(self._parts[before][1]) is not type(part):
+                continue
+            assert self._state.motions is not None
+            was = self._state.motions[0, before]
+            offset = _offset_at(was, motion.hi, motion.lo)
+            motion.offset, motion.velocity = min(max(offset, 0.0), float(row.span)), 0.0
+            commands[m] = min(max(float(was.command), -float(row.down_speed)), float(row.up_speed))
+            motion.command = math.nan if commands[m] == 0.0 else 0.0  # so that the command is not the one it has
         return commands
 
     def snapshot(self) -> bytes:
@@ -254,22 +276,24 @@ class World:
 
     @property
     def position(self) -> Floats:
-        """Centres of the balls now, shape (1, 2), metres. A drained ball stays where it crossed the drain."""
+        """Centres of the balls now, shape (balls, 2), metres. A drained ball stays where it crossed the drain."""
         return self._now()[0][:, :2].copy()
 
     @property
     def velocity(self) -> Floats:
-        """Velocities of the balls now, shape (1, 2), m/s."""
+        """Velocities of the balls now, shape (balls, 2), m/s."""
         return self._now()[0][:, 2:].copy()
 
     @property
-    def paddles(self) -> Floats:
-        """Centres of the paddles now, shape (paddles, 2), metres, in the order of the scene."""
+    def cores(self) -> Floats:
+        """Where the moving parts are now, in the order of the scene, shape (parts, 4): x, y of one end of the part's
+        core and of the other, metres. A flipper's first end is its pivot; a bumper's two ends are its centre.
+        """
         return self._now()[1]
 
     @property
     def status(self) -> npt.NDArray[np.int64]:
-        """One of OK, BUDGET, CRUSHED, OUT (`engine.layout`) for each ball, shape (1,)."""
+        """One of OK, BUDGET, CRUSHED, OUT (`engine.layout`) for each ball, shape (balls,)."""
         self._check_started()
         return np.array([ball.status for ball in self._state.balls[0]], np.int64)
 
@@ -278,26 +302,39 @@ class World:
         assert self._state.disabled is not None
         switch_ends(self._tables, self.scene, np.flatnonzero(self._state.disabled[0]).tolist())
 
+    def _cores(self) -> dict[int, Core]:
+        return _cores_by_index(self.scene, self._now()[1])
+
     def _now(self) -> tuple[Floats, Floats]:
         self._check_started()
-        balls, paddles = np.empty((1, 4)), np.empty((len(self._paddles), 2))
-        view(self._state, self._tables, 0, balls, paddles)
-        return balls, paddles
+        balls, cores = np.empty((self._balls, 4)), np.empty((len(self._parts), 4))
+        view(self._state, self._tables, 0, balls, cores)
+        return balls, cores
+
+    def _rows(self, name: str, value: npt.ArrayLike) -> Floats:
+        rows = np.array(value, np.float64, ndmin=2)
+        if rows.shape != (self._balls, 2):
+            raise ValueError(f"{name} = {value!r}: must be (x, y) or one row of it for each of {self._balls} balls")
+        if not np.isfinite(rows).all():
+            raise ValueError(f"{name} = {value!r}: must be finite")
+        return rows
 
     def _check_started(self) -> None:
         if not self._started:
             raise RuntimeError("reset the world before anything else")
 
 
-def _new(scene: Scene) -> tuple[Tables, State]:
+def _new(scene: Scene, balls: int) -> tuple[Tables, State]:
     tables = pack([scene])
-    return tables, new_state(tables, 1, 1, point=scene.ball.radius == 0.0, switches=True)
+    return tables, new_state(tables, 1, balls, point=scene.ball.radius == 0.0, switches=True)
 
 
-def _rows(name: str, value: npt.ArrayLike) -> Floats:
-    rows = np.array(value, np.float64, ndmin=2)
-    if rows.shape != (1, 2):
-        raise ValueError(f"{name} = {value!r}: must be (x, y) or one row of it for each of 1 balls")
-    if not np.isfinite(rows).all():
-        raise ValueError(f"{name} = {value!r}: must be finite")
-    return rows
+def _cores_by_index(scene: Scene, cores: Floats) -> dict[int, Core]:
+    rows = zip(scene.parts, cores.tolist(), strict=True)
+    return {index: ((x0, y0), (x1, y1)) for (index, _), (x0, y0, x1, y1) in rows}
+
+
+def _speed(name: str, value: float | bool, fastest: float) -> float:
+    if isinstance(value, bool | np.bool_) or not (math.isfinite(value) and abs(value) <= fastest):
+        raise ValueError(f"command {name!r} = {value!r}: must be finite and at most {fastest!r} m/s either way")
+    return float(value)

@@ -130,11 +130,11 @@ class Batch:
         }
 
     def view(self, world: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Balls (1, 4): x, y [m], vx, vy [m/s], and centres of the paddles (m, 2) [m] of a world now."""
-        rails = self.game.tables.rails
-        balls, paddles = np.empty((1, 4)), np.empty((0 if rails is None else rails.shape[1], 2))
-        view(self.state, self.game.tables, world, balls, paddles)
-        return balls, paddles
+        """Balls (1, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of a world now."""
+        parts = self.game.tables.parts
+        balls, cores = np.empty((1, 4)), np.empty((0 if parts is None else parts.shape[1], 4))
+        view(self.state, self.game.tables, world, balls, cores)
+        return balls, cores
 
     def close(self) -> None:
         """End the threads."""

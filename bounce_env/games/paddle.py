@@ -9,21 +9,12 @@ import numpy as np
 from pydantic import ConfigDict, Field, InstanceOf, StrictInt
 from pydantic.dataclasses import dataclass
 
+from bounce_env.engine.drive import command, command_unwatched, place
 from bounce_env.engine.jit import Table, borrow, function, kernel
 from bounce_env.engine.layout import OUT, Array, State, Tables, borrow_state, borrow_tables, record
-from bounce_env.engine.loop import (
-    DONE,
-    clear_hits,
-    command,
-    command_unwatched,
-    is_calm,
-    place,
-    restart,
-    resume,
-    run,
-)
+from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
 from bounce_env.engine.pack import direction, pack
-from bounce_env.engine.parts import rail_offset
+from bounce_env.engine.parts import offset_at
 from bounce_env.engine.trig import sin_cos
 from bounce_env.engine.view import ball_now
 from bounce_env.games.episode import (
@@ -162,17 +153,17 @@ def observe(state: State, tables: Tables, rules: Rules, episodes: Array, w: int,
     out[w, 2] = vx * (1.0 / REFERENCE_SPEED)
     out[w, 3] = vy * (1.0 / REFERENCE_SPEED)
     # The product may exceed the ends of the range by its rounding.
-    out[w, 4] = min(max(paddle_offset(state, state.paddles, w) * field.rail_scale - 1.0, -1.0), 1.0)
+    out[w, 4] = min(max(paddle_offset(state, state.motions, w) * field.rail_scale - 1.0, -1.0), 1.0)
     if out.shape[1] > OBSERVATION_SIZE:
         out[w, OBSERVATION_SIZE] = episodes[w].last_action
 
 
 @function
-def paddle_offset(state: State, paddles: Table, w: int) -> float:
+def paddle_offset(state: State, motions: Table, w: int) -> float:
     """Where the paddle is on its rail now [m]."""
-    if paddles is None:
+    if motions is None:
         return 0.0
-    return rail_offset(paddles[w, 0], state.worlds[w].time_hi, state.worlds[w].time_lo)
+    return offset_at(motions[w, 0], state.worlds[w].time_hi, state.worlds[w].time_lo)
 
 
 @function
@@ -211,7 +202,7 @@ def play(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, ac
     while episode.frames < last:
         if rules.repeat == 0.0 or uniform(episode.seed, STICKY_ACTIONS, episode.frames) >= rules.repeat:
             episode.last_action = action
-        move(state, tables, state.paddles, tables.rails, w, episode.last_action)
+        move(state, tables, state.motions, tables.parts, w, episode.last_action)
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
         code = run(state, tables, w, episode.frames / rules.fps, 0.0, rules.max_events, None)
@@ -242,9 +233,9 @@ def glide(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, a
     if episode.end != RUNNING or frames >= rules.limit:
         return False
     until = frames / rules.fps
-    if rules.repeat > 0.0 or not steer(state, tables, tables.rails, w, action):
+    if rules.repeat > 0.0 or not steer(state, tables, tables.parts, w, action):
         return False
-    if not is_calm(state.balls, state.paddles, tables.rails, w, world.scene, until, 0.0):
+    if not is_calm(state.balls, state.pairs, state.motions, tables.parts, w, world.scene, until, 0.0):
         return False
     clear_hits(state, w)
     # An episode that ended in the last step has been followed by a new one, of which this is the first step.
@@ -257,21 +248,21 @@ def glide(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, a
 
 
 @function
-def steer(state: State, tables: Tables, rails: Table, w: int, action: float) -> bool:
+def steer(state: State, tables: Tables, parts: Table, w: int, action: float) -> bool:
     """As `move`, where no ball is near the paddle; otherwise it does nothing and returns False."""
-    if rails is None:
+    if parts is None:
         return True
     world = state.worlds[w]
-    velocity = action * rails[world.scene, 0].max_speed
-    return command_unwatched(world, state.paddles, rails, state.zones, tables.drags, w, 0, velocity)
+    velocity = action * parts[world.scene, 0].up_speed
+    return command_unwatched(world, state.motions, parts, state.zones, tables.drags, w, 0, velocity)
 
 
 @function
-def move(state: State, tables: Tables, paddles: Any, rails: Any, w: int, action: float) -> None:
+def move(state: State, tables: Tables, motions: Any, parts: Any, w: int, action: float) -> None:
     """Let the paddle move at `action` (-1 to 1) times its greatest speed."""
-    if paddles is None or rails is None:
+    if motions is None or parts is None:
         return
-    command(state, tables, paddles, rails, w, 0, action * rails[state.worlds[w].scene, 0].max_speed)
+    command(state, tables, motions, parts, w, 0, action * parts[state.worlds[w].scene, 0].up_speed)
 
 
 @function

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.overlap import cleared, rail_middles
+from bounce_env.engine.overlap import cleared, cores_at_start
 from bounce_env.games.batch import Game
 
 ALLOWED = ("position", "velocity")
@@ -51,6 +51,6 @@ def _check(game: Game, row: npt.NDArray[np.float64]) -> None:
                 f"options['position'] = ({x}, {y}): must be on the field, "
                 f"x {left:g} to {right:g} and y {below:g} to {above:g}"
             )
-        row[:2] = cleared(scene, rail_middles(scene), x, y)
+        row[:2] = cleared(scene, cores_at_start(scene), x, y)
     if scene.max_speed is not None and math.hypot(vx, vy) > scene.max_speed:
         raise ValueError(f"options['velocity'] = ({vx}, {vy}): must be at most {scene.max_speed} m/s")

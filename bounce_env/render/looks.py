@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TypeAlias
 
 from bounce_env.render.projection import Projection
-from bounce_env.scene import Arc, Bumper, Field, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Bumper, Element, Field, Paddle, Part, Scene, Sensor, Wall
 
 Point: TypeAlias = tuple[float, float]
 """x to the right and y down, pixels."""
@@ -71,31 +71,36 @@ def ball_look(scene: Scene, projection: Projection) -> Look:
     return (*_glow(center, center, radius, 0.8 * radius, _BALL, 70), Stroke(center, center, radius, _BALL))
 
 
-def paddle_look(paddle: Paddle, projection: Projection, *, lit: bool) -> Look:
-    """A paddle whose centre is at the pixel coordinates (0, 0)."""
-    (x0, y0), (x1, y1) = paddle.rail_start, paddle.rail_end
-    reach = paddle.half_width * projection.scale / math.dist(paddle.rail_start, paddle.rail_end)
-    end = (reach * (x1 - x0), -reach * (y1 - y0))
-    start = (-end[0], -end[1])
-    radius = max(paddle.radius * projection.scale, _SMALLEST_RADIUS)
+def part_look(part: Part, way: Point, scene: Scene, projection: Projection, *, lit: bool) -> Look:
+    """A moving part whose core runs from the pixel coordinates (0, 0) by `way`."""
+    start = (0.0, 0.0)
+    if isinstance(part, Bumper):
+        return _bumper(start, part.radius, _adds_energy(part, scene), projection, lit=lit)
+    radius = max(part.radius * projection.scale, _SMALLEST_RADIUS)
     if not lit:
-        return (Stroke(start, end, radius, _PADDLE),)
-    return (*_glow(start, end, radius, 0.8 * radius, _PADDLE, 110), Stroke(start, end, radius, _PADDLE_LIT))
+        return (Stroke(start, way, radius, _PADDLE),)
+    return (*_glow(start, way, radius, 0.8 * radius, _PADDLE, 110), Stroke(start, way, radius, _PADDLE_LIT))
 
 
-def rail_look(paddle: Paddle, projection: Projection) -> Look:
-    """The line on which a paddle's centre moves."""
-    start, end = (_pixel(point, projection) for point in (paddle.rail_start, paddle.rail_end))
+def rail_look(part: Part, projection: Projection) -> Look:
+    """The line on which the centre of a part moves; nothing for one that turns."""
+    match part:
+        case Paddle():
+            ends = (part.rail_start, part.rail_end)
+        case Bumper(rail_end=tuple(end)):
+            ends = (part.center, end)
+        case _:
+            return ()
+    start, end = (_pixel(point, projection) for point in ends)
     return (Stroke(start, end, 0.6 * _pen(projection), _RAIL),)
 
 
-def still_look(
-    element: Wall | Bumper | Arc | Sensor | Field, scene: Scene, projection: Projection, *, lit: bool
-) -> Look:
+def still_look(element: Element, scene: Scene, projection: Projection, *, lit: bool) -> Look:
     """An element that does not move, where it stands in the picture."""
     match element:
         case Bumper():
-            return _bumper(element, _adds_energy(element, scene), projection, lit=lit)
+            lively = _adds_energy(element, scene)
+            return _bumper(_pixel(element.center, projection), element.radius, lively, projection, lit=lit)
         case Wall() if element.one_way:
             return _gate(element, _adds_energy(element, scene), projection, lit=lit)
         case Wall():
@@ -108,11 +113,12 @@ def still_look(
             return _dashes(element, projection, lit=lit)
         case Field():
             return _wind(element, projection, lit=lit)
+        case _:
+            raise TypeError(f"{element!r}: moves, see part_look")
 
 
-def _bumper(bumper: Bumper, lively: bool, projection: Projection, *, lit: bool) -> Look:
-    center = _pixel(bumper.center, projection)
-    radius = max(bumper.radius * projection.scale, _SMALLEST_RADIUS)
+def _bumper(center: Point, size: float, lively: bool, projection: Projection, *, lit: bool) -> Look:
+    radius = max(size * projection.scale, _SMALLEST_RADIUS)
     match lively, lit:
         case True, True:
             rim, core, reach, peak = _LIVELY_LIT, _LIVELY_CORE_LIT, radius, 170

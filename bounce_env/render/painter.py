@@ -1,13 +1,13 @@
 """Strokes to pixels, with pygame's software surfaces. Import it after `load_pygame` only."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 import pygame
 
-from bounce_env.render.looks import FIELD_BOTTOM, FIELD_TOP, TEXT, TEXT_SHADOW, Look, Patch, Stroke
+from bounce_env.render.looks import FIELD_BOTTOM, FIELD_TOP, TEXT, TEXT_SHADOW, Look, Patch, Point, Stroke
 
 Pixels = npt.NDArray[np.uint8]
 
@@ -69,6 +69,24 @@ class Sprite:
             moved = [_moved(shape, right / FINENESS, down / FINENESS) for shape in self._look]
             image = self._images[right, down] = _rasterised(moved, self._area)
         _stamp(target, image, (left, top))
+
+
+class Turned:
+    """A look that depends on a vector, and moves; drawn once for each vector that is told apart.
+
+    look_of: from the vector, in pixels, to a look about (0, 0).
+    """
+
+    def __init__(self, look_of: Callable[[Point], Look]) -> None:
+        self._look_of = look_of
+        self._sprites: dict[tuple[int, int], Sprite] = {}
+
+    def draw(self, target: pygame.Surface, start: Point, end: Point) -> None:
+        """Draw it with its (0, 0) at `start`, for the vector from there to `end`, pixel coordinates."""
+        way = (round((end[0] - start[0]) * FINENESS), round((end[1] - start[1]) * FINENESS))
+        if way not in self._sprites:
+            self._sprites[way] = Sprite(self._look_of((way[0] / FINENESS, way[1] / FINENESS)))
+        self._sprites[way].draw(target, *start)
 
 
 class Label:

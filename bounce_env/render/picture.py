@@ -9,14 +9,14 @@ import numpy.typing as npt
 class Picture:
     """A snapshot of all that changes in a scene; a `Renderer` checks it against its scene.
 
-    balls: centres, metres, shape (k, 2). paddles: centres of the scene's paddles in the order of its
-    elements, metres, shape (m, 2). alive: which balls are in play and drawn, shape (k,); None for all.
-    hits: how often each element was struck since the last frame, shape (len(scene.elements),): what was
+    balls: centres, metres, shape (k, 2). cores: ends of the cores of the scene's moving parts in the order of its
+    elements (`World.cores`), x, y, x, y, metres, shape (m, 4). alive: which balls are in play and drawn, shape (k,);
+    None for all. hits: how often each element was struck since the last frame, shape (len(scene.elements),): what was
     struck lights up; None for nothing. score: printed in a corner; None for no text.
     """
 
     balls: npt.ArrayLike
-    paddles: npt.ArrayLike = ()
+    cores: npt.ArrayLike = ()
     alive: npt.ArrayLike | None = None
     hits: npt.ArrayLike | None = None
     score: float | None = None

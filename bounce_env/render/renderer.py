@@ -1,15 +1,16 @@
 """The still scene drawn once; each frame copies it and draws what moves or was just struck."""
 
 import math
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from bounce_env.render.lazy_pygame import load_pygame
-from bounce_env.render.looks import ball_look, paddle_look, rail_look, still_look
+from bounce_env.render.looks import ball_look, part_look, rail_look, still_look
 from bounce_env.render.picture import Picture
 from bounce_env.render.projection import Projection
-from bounce_env.scene import Field, Paddle, Scene, Sensor
+from bounce_env.scene import Field, Scene, Sensor
 
 
 class Renderer:
@@ -27,18 +28,21 @@ class Renderer:
 
         self.projection = Projection.fit(scene.bounds, width, height)
         size = (self.projection.width, self.projection.height)
-        paddles = {i: e for i, e in enumerate(scene.elements) if isinstance(e, Paddle)}
-        still = {i: e for i, e in enumerate(scene.elements) if not isinstance(e, Paddle)}
-        rails = [rail_look(paddle, self.projection) for paddle in paddles.values()]
+        parts = dict(scene.parts)
+        still = {i: e for i, e in enumerate(scene.elements) if i not in parts}
+        rails = [look for part in parts.values() if (look := rail_look(part, self.projection))]
         beneath = sorted(still.values(), key=lambda e: not isinstance(e, Field))
         at_rest = [still_look(e, scene, self.projection, lit=False) for e in beneath]
         self._painter = painter
         self._elements = len(scene.elements)
         self._background = painter.still_picture(*size, [*rails, *at_rest])
         self._flashes = {i: painter.Overlay(still_look(e, scene, self.projection, lit=True)) for i, e in still.items()}
-        self._paddles = {
-            i: tuple(painter.Sprite(paddle_look(e, self.projection, lit=lit)) for lit in (False, True))
-            for i, e in paddles.items()
+        self._parts = {
+            i: tuple(
+                painter.Turned(partial(part_look, e, scene=scene, projection=self.projection, lit=lit))
+                for lit in (False, True)
+            )
+            for i, e in parts.items()
         }
         self._ball = painter.Sprite(ball_look(scene, self.projection))
         self._label = painter.Label(*_label_place(scene, self.projection))
@@ -50,7 +54,7 @@ class Renderer:
         picture has a wrong shape or holds what is not finite.
         """
         balls = self.projection.to_pixels(_points("balls", picture.balls))
-        paddles = self.projection.to_pixels(_points("paddles", picture.paddles, len(self._paddles)))
+        cores = self.projection.to_pixels(_ends("cores", picture.cores, len(self._parts)))
         alive = _flags("alive", picture.alive, len(balls), missing=True)
         hits = _flags("hits", picture.hits, self._elements, missing=False)
         text = None if picture.score is None else _printed(picture.score)
@@ -62,8 +66,8 @@ class Renderer:
                 self._flashes[i].draw(target)
         if text is not None:
             self._label.draw(target, text)
-        for (i, (calm, lit)), (x, y) in zip(self._paddles.items(), paddles.tolist(), strict=True):
-            (lit if hits[i] else calm).draw(target, x, y)
+        for (i, (calm, lit)), start, end in zip(self._parts.items(), *cores.reshape(2, -1, 2).tolist(), strict=True):
+            (lit if hits[i] else calm).draw(target, start, end)
         for x, y in balls[alive].tolist():
             self._ball.draw(target, x, y)
         return pixels
@@ -83,13 +87,26 @@ def _label_place(scene: Scene, projection: Projection) -> tuple[int, int, int, i
     return round(left) + inset, round(top) + inset // 2, room, max(11, round(0.075 * (bottom - top)))
 
 
-def _points(name: str, value: npt.ArrayLike, count: int | None = None) -> npt.NDArray[np.float64]:
+def _points(name: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
     points = np.asarray(value, dtype=np.float64)
     if points.size == 0:
         points = points.reshape(0, 2)
-    if points.ndim != 2 or points.shape[1] != 2 or (count is not None and len(points) != count):
-        rows = "k" if count is None else count
-        raise ValueError(f"{name} has shape {points.shape}: must be ({rows}, 2), centres in metres")
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError(f"{name} has shape {points.shape}: must be (k, 2), centres in metres")
+    return _finite(name, points)
+
+
+def _ends(name: str, value: npt.ArrayLike, count: int) -> npt.NDArray[np.float64]:
+    """First all the starts, then all the ends, (2 count, 2)."""
+    rows = np.asarray(value, dtype=np.float64)
+    if rows.size == 0:
+        rows = rows.reshape(0, 4)
+    if rows.shape != (count, 4):
+        raise ValueError(f"{name} has shape {rows.shape}: must be ({count}, 4), x, y, x, y in metres")
+    return np.concatenate([_finite(name, rows)[:, :2], rows[:, 2:]])
+
+
+def _finite(name: str, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     if not np.isfinite(points).all():
         raise ValueError(f"{name} = {points.tolist()}: must be finite, metres")
     return points

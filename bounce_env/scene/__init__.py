@@ -1,7 +1,21 @@
 """Scenes: what a table is made of, and how it is read from a file and written to one."""
 
 from bounce_env.scene.load import SceneError, builtin_scenes, dump_scene, load_scene, scene_from_dict
-from bounce_env.scene.spec import Arc, Ball, Box, Bumper, Element, Field, Paddle, Scene, Sensor, Wall
+from bounce_env.scene.spec import (
+    Arc,
+    Ball,
+    Box,
+    Bumper,
+    Element,
+    Field,
+    Flipper,
+    Paddle,
+    Part,
+    Scene,
+    Sensor,
+    Wall,
+    moves,
+)
 
 __all__ = [
     "Arc",
@@ -10,7 +24,9 @@ __all__ = [
     "Bumper",
     "Element",
     "Field",
+    "Flipper",
     "Paddle",
+    "Part",
     "Scene",
     "SceneError",
     "Sensor",
@@ -18,5 +34,6 @@ __all__ = [
     "builtin_scenes",
     "dump_scene",
     "load_scene",
+    "moves",
     "scene_from_dict",
 ]

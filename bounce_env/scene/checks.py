@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from pydantic_core import InitErrorDetails
 
 from bounce_env.scene.base import union
-from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Paddle, Wall
+from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Flipper, Paddle, Wall
 from bounce_env.scene.fields import not_allowed, required
 from bounce_env.scene.regions import Field, Sensor, flat_corner
 
@@ -107,6 +107,11 @@ def _size_problems(element: Element, ball_radius: float, limits: _Limits) -> Ite
             yield from _short(element, "start", "end", limits)
         case Bumper():
             yield from _thin(element.radius, limits)
+            yield from _short(element, "center", "rail_end", limits)
+        case Flipper():
+            yield from _thin(element.radius, limits)
+            if element.length < limits.length:
+                yield "length", f"at least {limits.length:.3g} m"
         case Arc():
             yield from _thin(element.radius, limits)
             yield from _misshapen(element, ball_radius, limits)
@@ -128,9 +133,11 @@ def _thin(radius: float | None, limits: _Limits) -> Iterator[tuple[str, str]]:
         yield "radius", f"at least {limits.radius:.3g} m"
 
 
-def _short(element: Wall | Paddle | Sensor, first: str, last: str, limits: _Limits) -> Iterator[tuple[str, str]]:
+def _short(
+    element: Wall | Bumper | Paddle | Sensor, first: str, last: str, limits: _Limits
+) -> Iterator[tuple[str, str]]:
     start, end = getattr(element, first), getattr(element, last)
-    if start is not None and math.dist(start, end) < limits.length:
+    if start is not None and end is not None and math.dist(start, end) < limits.length:
         yield last, f"at least {limits.length:.3g} m away from {first} = {list(start)}"
 
 
@@ -145,7 +152,7 @@ def _misshapen(arc: Arc, ball_radius: float, limits: _Limits) -> Iterator[tuple[
 
 
 def _speeds(ball: Ball | None, elements: Mapping[int, Element], max_speed: float | None) -> Iterator[InitErrorDetails]:
-    speeds = [(part.max_speed, index) for index, part in elements.items() if isinstance(part, Paddle)]
+    speeds = [(_part_speed(element), index) for index, element in elements.items()]
     fastest, index = max(speeds, default=(0.0, 0))
     if max_speed is None:
         gains = (_gain(ball, index, element) for index, element in elements.items())
@@ -153,8 +160,20 @@ def _speeds(ball: Ball | None, elements: Mapping[int, Element], max_speed: float
             words = f"a number > {fastest:g}, because {gain}, so that bounces may add speed without limit"
             yield InitErrorDetails(type=required(words), loc=("max_speed",), input=None)
     elif max_speed <= fastest:
-        words = f"greater than {fastest}, the max_speed of {_label(index, elements[index])}"
+        words = f"greater than {fastest}, the fastest that the surface of {_label(index, elements[index])} moves"
         yield _not_allowed(words, max_speed, "max_speed")
+
+
+def _part_speed(element: Element) -> float:
+    """The fastest that an element's surface moves, m/s."""
+    match element:
+        case Paddle():
+            return element.max_speed
+        case Flipper():
+            return element.surface_speed
+        case Bumper():
+            return element.speed
+    return 0.0
 
 
 def _gain(ball: Ball | None, index: int, element: Element) -> str | None:

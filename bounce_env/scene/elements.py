@@ -11,12 +11,13 @@ along the surface is multiplied by ball.f * element.f. A kick is then added alon
 
 import math
 from dataclasses import KW_ONLY
-from typing import TypeAlias
+from typing import Self, TypeAlias
 
-from pydantic import ValidationInfo, field_validator
+from pydantic import ValidationError, ValidationInfo, field_validator, model_validator
 from pydantic.dataclasses import dataclass
+from pydantic_core import InitErrorDetails
 
-from bounce_env.scene.base import CONFIG, Box, Spec, away_from, box_of
+from bounce_env.scene.base import CONFIG, Box, Spec, away_from, box_of, union
 from bounce_env.scene.fields import (
     SMALLEST,
     Angle,
@@ -24,6 +25,7 @@ from bounce_env.scene.fields import (
     Name,
     Positive,
     Vector,
+    VectorOrNone,
     ZeroOrMore,
     ZeroOrPositive,
     ZeroToOne,
@@ -89,18 +91,33 @@ class Wall(_Surface):
 
 @dataclass(frozen=True, config=CONFIG)
 class Bumper(_Surface):
-    """A circle that bounces the ball outside of it.
+    """A circle that bounces the ball outside of it, and may move to and fro on a rail.
 
-    center: (x, y) in metres. radius: metres, > 0. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
+    center: (x, y) in metres. radius: metres, > 0. rail_end: where its centre turns back, (x, y) in metres, if it moves
+    to there and back from `center`; None for a bumper that stands. speed: at which it does so, m/s, > 0 with a
+    `rail_end`, otherwise 0. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
     """
 
     center: Vector
     radius: Positive
+    _: KW_ONLY
+    rail_end: VectorOrNone = None
+    speed: ZeroOrPositive = 0.0
+
+    _check_rail_end = field_validator("rail_end")(away_from("center"))
+
+    @model_validator(mode="after")
+    def _check_speed(self) -> Self:
+        if (self.speed > 0.0) != (self.rail_end is not None):
+            problem = not_allowed("> 0 with a rail_end, and 0 without one")
+            details = [InitErrorDetails(type=problem, loc=("speed",), input=self.speed)]
+            raise ValidationError.from_exception_data("Bumper", details)
+        return self
 
     @property
     def bounds(self) -> Box:
-        """x_min, y_min, x_max, y_max in metres."""
-        return box_of((self.center,), self.radius)
+        """x_min, y_min, x_max, y_max in metres of all that it can reach."""
+        return box_of([point for point in (self.center, self.rail_end) if point is not None], self.radius)
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -190,4 +207,53 @@ class Paddle(_Surface):
         return box_of(((x0 - dx, y0 - dy), (x1 + dx, y1 + dy)), self.radius)
 
 
-Element: TypeAlias = Wall | Bumper | Arc | Paddle | Sensor | Field
+@dataclass(frozen=True, config=CONFIG)
+class Flipper(_Surface):
+    """A capsule that turns about a pivot between two angles: pressed towards the one, released back to the other.
+
+    pivot: (x, y) in metres, the middle of its round end. length: from there to the middle of the other end, metres,
+    > 0. radius: thickness around that line, metres, > 0. rest_angle, active_angle: of the line, radians from the x
+    axis, different by at most 2 pi; it starts at rest_angle. up_speed, down_speed: at which it turns to active_angle
+    and back, rad/s, > 0. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
+    """
+
+    pivot: Vector
+    length: Positive
+    _: KW_ONLY
+    radius: Positive
+    rest_angle: Angle
+    active_angle: Angle
+    up_speed: Positive
+    down_speed: Positive
+
+    @field_validator("active_angle")
+    @classmethod
+    def _check_stroke(cls, active: float, info: ValidationInfo) -> float:
+        if "rest_angle" not in info.data:  # it was refused itself
+            return active
+        rest = info.data["rest_angle"]
+        if not SMALLEST_SPAN <= abs(active - rest) <= 2 * math.pi:
+            raise not_allowed(f"{SMALLEST_SPAN:g} to 2 pi radians more or less than rest_angle = {rest}")
+        return active
+
+    @property
+    def surface_speed(self) -> float:
+        """The fastest that any point of its surface moves, m/s."""
+        return max(self.up_speed, self.down_speed) * (self.length + self.radius)
+
+    @property
+    def bounds(self) -> Box:
+        """x_min, y_min, x_max, y_max in metres of all that it can reach between its stops."""
+        start, end = sorted((self.rest_angle, self.active_angle))
+        boxes = (Arc(self.pivot, self.length, start, end).bounds, box_of((self.pivot,)))
+        x_min, y_min, x_max, y_max = union(boxes)
+        return box_of(((x_min, y_min), (x_max, y_max)), self.radius)
+
+
+Element: TypeAlias = Wall | Bumper | Arc | Paddle | Flipper | Sensor | Field
+Part: TypeAlias = Paddle | Flipper | Bumper
+
+
+def moves(element: Element) -> bool:
+    """Whether an element moves: as it is commanded, or a bumper by itself."""
+    return isinstance(element, Paddle | Flipper) or (isinstance(element, Bumper) and element.rail_end is not None)

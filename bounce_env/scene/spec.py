@@ -7,7 +7,7 @@ from pydantic.dataclasses import dataclass
 
 from bounce_env.scene.base import CONFIG, Box, Spec, union
 from bounce_env.scene.checks import check_scene
-from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Paddle, Wall
+from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Flipper, Paddle, Part, Wall, moves
 from bounce_env.scene.fields import (
     Allowed,
     PositiveOrNone,
@@ -19,15 +19,29 @@ from bounce_env.scene.fields import (
 )
 from bounce_env.scene.regions import Field, Sensor
 
-__all__ = ["Arc", "Ball", "Box", "Bumper", "Element", "Field", "Paddle", "Scene", "Sensor", "Wall"]
+__all__ = [
+    "Arc",
+    "Ball",
+    "Box",
+    "Bumper",
+    "Element",
+    "Field",
+    "Flipper",
+    "Paddle",
+    "Part",
+    "Scene",
+    "Sensor",
+    "Wall",
+    "moves",
+]
 
 _Ball = Annotated[Ball, Allowed("a Ball", instance_of(Ball))]
-_Element = Annotated[Element, Allowed("a Wall, Bumper, Arc, Paddle, Sensor or Field", instance_of(Element))]
+_Element = Annotated[Element, Allowed("a Wall, Bumper, Arc, Paddle, Flipper, Sensor or Field", instance_of(Element))]
 
 
 def _tuple(value: object) -> tuple[object, ...]:
     if not isinstance(value, tuple | list):  # pydantic alone would take a set, which has no order
-        raise not_allowed("a tuple or list of Wall, Bumper, Arc, Paddle, Sensor and Field")
+        raise not_allowed("a tuple or list of Wall, Bumper, Arc, Paddle, Flipper, Sensor and Field")
     return tuple(value)
 
 
@@ -39,7 +53,7 @@ class Scene(Spec):
     where gravity presses the ball on a surface, an approach slower than it is absorbed and the ball slides on
     without friction; at 0 friction stops it. max_speed: no bounce leaves the ball faster than this, m/s, > 0;
     None for no limit. It must be given if a bounce can add energy (a kick, or ball.b * element.b > 1), and
-    exceed every paddle's. drag: > 0 and at most 1; every ball's velocity is multiplied by it once at each
+    exceed that of every part. drag: > 0 and at most 1; every ball's velocity is multiplied by it once at each
     instant at which a command is given.
     elements: their order counts, for it breaks the tie of bounces that are alike, and an element's index is
     its number in the ledger.
@@ -59,6 +73,11 @@ class Scene(Spec):
     def _check(self) -> Self:
         check_scene(self.ball, dict(enumerate(self.elements)), self.max_speed)
         return self
+
+    @property
+    def parts(self) -> tuple[tuple[int, Part], ...]:
+        """The elements that move, each with its index in `elements`, in their order."""
+        return tuple((i, e) for i, e in enumerate(self.elements) if isinstance(e, Part) and moves(e))
 
     @property
     def bounds(self) -> Box:

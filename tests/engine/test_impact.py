@@ -38,8 +38,8 @@ def test_falling_time_is_the_falling_root(gap: float, rate: float, pull: float) 
         else:
             root = mpmath.sqrt(square)
             expected = 2 * g / (root - r) if r < 0 else (r + root) / -a
-        if expected == mpmath.inf:
-            assert t == math.inf
+        if expected > 1e300:  # no run is that long, and it may be more than a float holds
+            assert t > 1e300
         else:
             # Where the two terms under the root nearly cancel, the root itself is that ill-conditioned.
             condition = 1 + (r * r + abs(2 * a * g)) / abs(square)
@@ -77,7 +77,9 @@ def test_no_circle_is_stepped_over(
     if t < horizon:
         px, py = x + vx * t + 0.5 * gx * t * t, y + vy * t + 0.5 * gy * t * t
         assert abs(math.hypot(px, py) - reach) <= 4.0 * slack
-        assert px * (vx + gx * t) + py * (vy + gy * t) < 0.0
+        qx, qy = vx + gx * t, vy + gy * t
+        # Where it only touches in passing it is told nearest, where nothing closes.
+        assert px * qx + py * qy <= 4.0 * slack * math.hypot(qx, qy)
 
 
 @settings(max_examples=soak_count(300, 100_000), deadline=None)
@@ -124,7 +126,7 @@ def test_no_capsule_is_stepped_over(
     if gap(np.zeros(1))[0] < 1e-6:
         return
     slack = SLACK * (abs(x) + abs(y) + half + reach + (abs(vx) + abs(vy) - gy * 10.0) * 10.0)
-    t = capsule_time(x, y, vx, vy, 0.0, gy, ux, uy, half, reach, slack, 10.0)
+    t = capsule_time(x, y, vx, vy, 0.0, gy, ux, uy, -half, half, reach, slack, 10.0)
     samples = gap(np.linspace(0.0, min(t, 10.0), 20_001))
     assert samples.min() >= -4.0 * slack
     if t < 10.0:

@@ -127,20 +127,20 @@ def test_drain_takes_the_ball_out() -> None:
 
 def test_paddle_runs_to_its_stop_and_stands() -> None:
     world = started(PADDLE, (0.5, 0.9), (0.0, 0.0))
-    assert world.paddles.tolist() == [[0.5, 0.2]]
+    assert world.cores.tolist() == [[0.4, 0.2, 0.6, 0.2]]
     world.command("paddle", 0.5)
     ledger = world.advance(1.0, ledger=True)
     assert ledger is not None
     assert ledger["kind"].tolist() == [PART_STOPS]
     assert ledger["ball"].tolist() == [-1]
     assert ledger["time"][0] == pytest.approx(0.4, rel=1e-15)
-    assert world.paddles[0] == pytest.approx([0.7, 0.2], rel=1e-15)
+    assert world.cores[0] == pytest.approx([0.6, 0.2, 0.8, 0.2], rel=1e-15)
     world.command("paddle", 2.0)  # against the stop: nothing moves
     world.advance(1.0)
-    assert world.paddles[0] == pytest.approx([0.7, 0.2], rel=1e-15)
+    assert world.cores[0] == pytest.approx([0.6, 0.2, 0.8, 0.2], rel=1e-15)
     world.command("paddle", -2.0)
     world.advance(0.1)
-    assert world.paddles[0] == pytest.approx([0.5, 0.2], rel=1e-14)
+    assert world.cores[0] == pytest.approx([0.4, 0.2, 0.6, 0.2], rel=1e-14)
 
 
 def test_a_moving_paddle_drags_the_ball_along() -> None:
@@ -193,7 +193,7 @@ def test_speed_cap() -> None:
         (lambda w: w.advance(-1.0), "seconds = -1.0: must be finite and >= 0"),
         (lambda w: w.advance(math.nan), "seconds = nan: must be finite and >= 0"),
         (lambda w: w.advance(1.0, max_events=0), "max_events = 0: must be >= 1"),
-        (lambda w: w.command("flipper", 1.0), r"'flipper' must be one of the scene's paddles: \['paddle'\]"),
+        (lambda w: w.command("flipper", 1.0), r"'flipper' must be one of the scene's parts: \['paddle'\]"),
         (lambda w: w.command("", 1.0), "'' must be one of"),
         (lambda w: w.command("paddle", math.nan), "'paddle' = nan: must be finite and at most 2.0"),
         (lambda w: w.command("paddle", 2.5), "'paddle' = 2.5: must be finite and at most 2.0"),
@@ -202,17 +202,17 @@ def test_speed_cap() -> None:
 def test_bad_input_names_what_is_wrong_and_changes_nothing(action, words: str) -> None:  # type: ignore[no-untyped-def]
     world = started(PADDLE, (0.5, 0.5), (0.3, 0.4))
     world.advance(1.0)
-    before = (world.position.tobytes(), world.velocity.tobytes(), world.paddles.tobytes(), world.time)
+    before = (world.position.tobytes(), world.velocity.tobytes(), world.cores.tobytes(), world.time)
     with pytest.raises(ValueError, match=words):
         action(world)
-    assert (world.position.tobytes(), world.velocity.tobytes(), world.paddles.tobytes(), world.time) == before
+    assert (world.position.tobytes(), world.velocity.tobytes(), world.cores.tobytes(), world.time) == before
 
 
 def test_nothing_before_reset() -> None:
     with pytest.raises(RuntimeError, match="reset the world"):
         World(FREE).advance(1.0)
-    with pytest.raises(ValueError, match="balls = 2: must be 1"):
-        World(FREE, balls=2)
+    with pytest.raises(ValueError, match="balls = 0: must be a whole number from 1 to"):
+        World(FREE, balls=0)
     with pytest.raises(TypeError, match="must be a Scene"):
         World("paddle")  # type: ignore[arg-type]
 

@@ -348,7 +348,7 @@ def test_a_step_split_in_parts_gives_the_same_bits(small, large):
         assert_same(earned[playing], rewards[playing])
         playing &= ~drained
         assert_same(part_observations[playing], observations[playing])
-        for part in ("balls", "paddles"):  # in float64, too
+        for part in ("balls", "motions"):  # in float64, too
             assert_same(getattr(fine._batch.state, part)[playing], getattr(coarse._batch.state, part)[playing], part)
         total += earned[playing].sum()
     assert total > 10

@@ -30,7 +30,8 @@ def follow(observations):
 
 def expected_observation(env):
     """The card's formulas, in float64, from the state in metres."""
-    ((x, y, vx, vy),), ((paddle, _),) = env.unwrapped._batch.view(0)
+    ((x, y, vx, vy),), ((left, _, right, _),) = env.unwrapped._batch.view(0)
+    paddle = (left + right) / 2
     place = (paddle - LEFT_STOP) / (RIGHT_STOP - LEFT_STOP)
     return np.array([2 * x / WIDTH - 1, 2 * (y - BOTTOM) / (TOP - BOTTOM) - 1, vx / 2, vy / 2, 2 * place - 1])
 

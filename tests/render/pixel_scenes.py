@@ -27,7 +27,13 @@ TABLE = Scene(
 )
 """One of everything, with room between."""
 
-PADDLE = ((0.5, 0.08),)
+
+def paddle_at(x: float) -> tuple[tuple[float, float, float, float]]:
+    """The core of the table's paddle with its middle at `x`."""
+    return ((x - 0.1, 0.08, x + 0.1, 0.08),)
+
+
+PADDLE = paddle_at(0.5)
 """Where the paddle stands while something else is looked at."""
 
 INDEX = {element.name: i for i, element in enumerate(TABLE.elements)}
@@ -68,7 +74,7 @@ def distances(renderer: Renderer, point: npt.ArrayLike) -> npt.NDArray[np.float6
 
 def empty_table(renderer: Renderer) -> npt.NDArray[np.uint8]:
     """A frame of `TABLE` without a ball."""
-    return renderer.frame(Picture(balls=(), paddles=PADDLE))
+    return renderer.frame(Picture(balls=(), cores=PADDLE))
 
 
 def ball_color(renderer: Renderer) -> tuple[int, ...]:

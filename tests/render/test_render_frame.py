@@ -17,9 +17,11 @@ from pixel_scenes import (
     distances,
     empty_table,
     hits_on,
+    paddle_at,
     table_renderer,
 )
 
+from bounce_env.engine.overlap import cores_at_start
 from bounce_env.render import Picture, Renderer, painter
 from bounce_env.render.looks import Stroke
 from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
@@ -54,7 +56,7 @@ def test_the_ball_is_where_the_projection_puts_it(width: int | None, height: int
     empty = empty_table(renderer)
     radius = max(0.02 * renderer.projection.scale, 1.5)
     for point in random_points(soak_count(50, 500)):
-        frame = renderer.frame(Picture(balls=[point], paddles=PADDLE))
+        frame = renderer.frame(Picture(balls=[point], cores=PADDLE))
         away = distances(renderer, point)
         assert (frame[away < radius - 0.8] == ball_color(renderer)).all()
         assert (changed(frame, empty)[away > 1.8 * radius + 2] == 0).all()
@@ -63,7 +65,7 @@ def test_the_ball_is_where_the_projection_puts_it(width: int | None, height: int
 def test_the_ball_is_as_large_as_the_scene_says(renderer: Renderer) -> None:
     radius = 0.02 * renderer.projection.scale
     for point in random_points(20):
-        frame = renderer.frame(Picture(balls=[point], paddles=PADDLE))
+        frame = renderer.frame(Picture(balls=[point], cores=PADDLE))
         pure = (frame == ball_color(renderer)).all(axis=2).sum()
         assert np.pi * (radius - 1) ** 2 < pure < np.pi * radius**2
 
@@ -82,30 +84,28 @@ def test_a_ball_moves_by_its_share_of_a_pixel() -> None:
 
 def test_y_points_up(renderer: Renderer) -> None:
     empty = empty_table(renderer)
-    low, high = (
-        centroid(changed(renderer.frame(Picture(balls=[(0.5, y)], paddles=PADDLE)), empty)) for y in (0.3, 0.8)
-    )
+    low, high = (centroid(changed(renderer.frame(Picture(balls=[(0.5, y)], cores=PADDLE)), empty)) for y in (0.3, 0.8))
     assert low[1] - high[1] == pytest.approx(0.5 * renderer.projection.scale, abs=0.3)
     assert low[0] == pytest.approx(high[0], abs=0.1)
 
 
 def test_every_ball_in_play_is_drawn_and_no_other(renderer: Renderer) -> None:
     points = [(0.5, 0.7), (0.5, 1.2), (0.8, 0.3)]
-    frame = renderer.frame(Picture(balls=points, paddles=PADDLE, alive=[True, False, True]))
-    assert (frame == renderer.frame(Picture(balls=points[::2], paddles=PADDLE))).all()
+    frame = renderer.frame(Picture(balls=points, cores=PADDLE, alive=[True, False, True]))
+    assert (frame == renderer.frame(Picture(balls=points[::2], cores=PADDLE))).all()
     for point, drawn in zip(points, (True, False, True), strict=True):
         assert (frame[distances(renderer, point) < 3] == ball_color(renderer)).all() == drawn
 
 
 @pytest.mark.parametrize("point", [(-1.0, 0.5), (0.5, -0.4), (1e9, 1e9), (-1e12, 3.0), (0.5, 1e15)])
 def test_a_ball_outside_the_picture_is_not_seen(renderer: Renderer, point: tuple[float, float]) -> None:
-    assert (renderer.frame(Picture(balls=[point], paddles=PADDLE)) == empty_table(renderer)).all()
+    assert (renderer.frame(Picture(balls=[point], cores=PADDLE)) == empty_table(renderer)).all()
 
 
 @pytest.mark.parametrize("pixel", [(2**32 + 200, 280), (200, 280 - 2**32), (200, 2**40 + 280), (1e30, 280)])
 def test_pixels_do_not_wrap_around(renderer: Renderer, pixel: tuple[float, float]) -> None:
     point = renderer.projection.to_world(pixel)
-    assert (renderer.frame(Picture(balls=[point], paddles=PADDLE)) == empty_table(renderer)).all()
+    assert (renderer.frame(Picture(balls=[point], cores=PADDLE)) == empty_table(renderer)).all()
 
 
 def test_a_ball_half_outside_is_cut_at_the_border() -> None:
@@ -131,8 +131,8 @@ def test_the_point_ball_is_a_dot_one_can_see(width: int | None, height: int | No
 def test_a_paddle_is_as_long_and_thick_as_the_scene_says(renderer: Renderer) -> None:
     scale = renderer.projection.scale
     for x in np.linspace(0.1, 0.9, 17):
-        frame = renderer.frame(Picture(balls=(), paddles=[(x, 0.08)]))
-        other = renderer.frame(Picture(balls=(), paddles=[(0.9 if x < 0.5 else 0.1, 0.08)]))
+        frame = renderer.frame(Picture(balls=(), cores=paddle_at(x)))
+        other = renderer.frame(Picture(balls=(), cores=paddle_at(0.9 if x < 0.5 else 0.1)))
         covered = changed(frame, other) > 100
         column, row = renderer.projection.to_pixels((x, 0.08))
         near = np.abs(np.arange(400) + 0.5 - column) < 0.13 * scale
@@ -147,11 +147,16 @@ def test_a_paddle_is_as_long_and_thick_as_the_scene_says(renderer: Renderer) -> 
 def test_a_paddle_lies_along_its_rail() -> None:
     paddle = Paddle((0.2, 0.2), (0.8, 0.8), half_width=0.15, radius=0.02, max_speed=1.0)
     renderer = Renderer(Scene(elements=(Wall((0, 0), (1, 0)), Wall((0, 1), (1, 1)), paddle)))
-    color = renderer.frame(Picture(balls=(), paddles=[(0.5, 0.5)]))[_at(renderer, (0.5, 0.5))].tolist()
-    frame = renderer.frame(Picture(balls=(), paddles=[(0.4, 0.4)]))
+    color = renderer.frame(Picture(balls=(), cores=[_slanted(0.5)]))[_at(renderer, (0.5, 0.5))].tolist()
+    frame = renderer.frame(Picture(balls=(), cores=[_slanted(0.4)]))
     for along, across, covered in ((0.14, 0, True), (-0.14, 0, True), (0.2, 0, False), (0, 0.1, False), (0, 0, True)):
         point = (0.4 + (along - across) / 2**0.5, 0.4 + (along + across) / 2**0.5)
         assert (frame[_at(renderer, point)].tolist() == color) == covered, (along, across)
+
+
+def _slanted(x: float) -> tuple[float, float, float, float]:
+    off = 0.15 / 2**0.5
+    return x - off, x - off, x + off, x + off
 
 
 def _at(renderer: Renderer, point: tuple[float, float]) -> tuple[int, int]:
@@ -160,8 +165,8 @@ def _at(renderer: Renderer, point: tuple[float, float]) -> tuple[int, int]:
 
 
 def test_all_but_the_moving_parts_stays_the_same(renderer: Renderer) -> None:
-    first = renderer.frame(Picture(balls=[(0.3, 0.7)], paddles=[(0.3, 0.08)], score=1))
-    second = renderer.frame(Picture(balls=[(0.8, 1.2)], paddles=[(0.7, 0.08)], score=1))
+    first = renderer.frame(Picture(balls=[(0.3, 0.7)], cores=paddle_at(0.3), score=1))
+    second = renderer.frame(Picture(balls=[(0.8, 1.2)], cores=paddle_at(0.7), score=1))
     difference = changed(first, second)
     scale = renderer.projection.scale
     for point, reach in (((0.3, 0.7), 0.04), ((0.8, 1.2), 0.04), ((0.3, 0.08), 0.115), ((0.7, 0.08), 0.115)):
@@ -207,7 +212,7 @@ def test_edges_are_smooth() -> None:
 def test_what_is_struck_lights_up_and_nothing_else(name: str, width: int | None, height: int | None) -> None:
     renderer = table_renderer(width, height)
     calm = empty_table(renderer)
-    lit = renderer.frame(Picture(balls=(), paddles=PADDLE, hits=hits_on(name)))
+    lit = renderer.frame(Picture(balls=(), cores=PADDLE, hits=hits_on(name)))
     difference = changed(lit, calm)
     x0, y0, x1, y1 = TABLE.elements[INDEX[name]].bounds
     (left, top), (right, bottom) = renderer.projection.to_pixels([(x0, y1), (x1, y0)])
@@ -222,8 +227,8 @@ def test_what_is_struck_lights_up_and_nothing_else(name: str, width: int | None,
 
 def test_a_struck_paddle_lights_up(renderer: Renderer) -> None:
     calm = empty_table(renderer)
-    lit = renderer.frame(Picture(balls=(), paddles=PADDLE, hits=hits_on("paddle")))
-    at_paddle = distances(renderer, PADDLE[0])
+    lit = renderer.frame(Picture(balls=(), cores=PADDLE, hits=hits_on("paddle")))
+    at_paddle = distances(renderer, (0.5, 0.08))
     assert lit[at_paddle < 3].sum() > calm[at_paddle < 3].sum()
     assert changed(lit, calm)[at_paddle > 0.15 * renderer.projection.scale].max() == 0
 
@@ -239,7 +244,7 @@ def test_what_adds_energy_looks_different(renderer: Renderer) -> None:
 @pytest.mark.parametrize("score", [0, 7, -0.5, 1234.5, 1e6, 1e20, -1e300])
 def test_the_score_is_printed_whole_inside_the_field(width: int | None, height: int | None, score: float) -> None:
     renderer = table_renderer(width, height)
-    inked = changed(renderer.frame(Picture(balls=(), paddles=PADDLE, score=score)), empty_table(renderer)) > 0
+    inked = changed(renderer.frame(Picture(balls=(), cores=PADDLE, score=score)), empty_table(renderer)) > 0
     (left, top), (right, bottom) = renderer.projection.to_pixels([(0.0, 1.4), (1.0, 0.0)])
     rows, columns = np.nonzero(inked)
     assert left < columns.min()
@@ -262,18 +267,18 @@ def test_the_score_is_inside_the_walls_though_a_sensor_reaches_beyond_them() -> 
 
 def test_other_scores_give_other_pictures(renderer: Renderer) -> None:
     scores = [None, 0, 1, 12, 21, 0.5, -0.5, 1000, 10000]
-    frames = {renderer.frame(Picture(balls=(), paddles=PADDLE, score=score)).tobytes() for score in scores}
+    frames = {renderer.frame(Picture(balls=(), cores=PADDLE, score=score)).tobytes() for score in scores}
     assert len(frames) == len(scores)
 
 
 def test_no_zero_has_a_sign(renderer: Renderer) -> None:
-    zeros = [renderer.frame(Picture(balls=(), paddles=PADDLE, score=zero)) for zero in (0, 0.0, -0.0, np.float32(0))]
+    zeros = [renderer.frame(Picture(balls=(), cores=PADDLE, score=zero)) for zero in (0, 0.0, -0.0, np.float32(0))]
     assert all((zero == zeros[0]).all() for zero in zeros)
 
 
 def busy_picture(i: int) -> Picture:
     return Picture(
-        balls=random_points(3, seed=i), paddles=[(0.1 + 0.1 * (i % 9), 0.08)], hits=np.arange(9) % 3 == i % 3, score=i
+        balls=random_points(3, seed=i), cores=paddle_at(0.1 + 0.1 * (i % 9)), hits=np.arange(9) % 3 == i % 3, score=i
     )
 
 
@@ -328,10 +333,10 @@ def test_later_elements_lie_above_earlier_ones() -> None:
 def test_built_in_scenes_can_be_drawn_at_any_size(name: str, width: int | None, height: int | None) -> None:
     scene = load_scene(name)
     renderer = Renderer(scene, width, height)
-    paddles = [e.rail_start for e in scene.elements if isinstance(e, Paddle)]
+    cores = [[x0, y0, x1, y1] for (x0, y0), (x1, y1) in cores_at_start(scene).values()]
     x0, y0, x1, y1 = scene.bounds
     center = ((x0 + x1) / 2, (y0 + y1) / 2)
-    frame = renderer.frame(Picture([center], paddles, hits=np.ones(len(scene.elements)), score=123.0))
+    frame = renderer.frame(Picture([center], cores, hits=np.ones(len(scene.elements)), score=123.0))
     assert frame.shape == (renderer.projection.height, renderer.projection.width, 3)
     assert frame.max() > 200
 
@@ -341,14 +346,14 @@ def test_built_in_scenes_can_be_drawn_at_any_size(name: str, width: int | None, 
     [
         ("balls", [0.5, 0.5], r"balls has shape \(2,\): must be \(k, 2\)"),
         ("balls", [(0.5, np.nan)], r"balls = .*nan.*finite"),
-        ("paddles", (), r"paddles has shape \(0, 2\): must be \(1, 2\)"),
-        ("paddles", [(0.5, np.inf)], r"paddles = .*inf.*finite"),
+        ("cores", (), r"cores has shape \(0, 4\): must be \(1, 4\)"),
+        ("cores", [(0.5, np.inf, 0.5, 0.5)], r"cores = .*inf.*finite"),
         ("alive", [True], r"alive has shape \(1,\): must be \(2,\)"),
         ("hits", [0, 1], r"hits has shape \(2,\): must be \(9,\)"),
         ("score", np.nan, "score = nan: must be None or finite"),
     ],
 )
 def test_a_bad_picture_names_the_field(renderer: Renderer, field: str, value: object, message: str) -> None:
-    good = {"balls": [(0.5, 0.5), (0.6, 0.6)], "paddles": PADDLE}
+    good = {"balls": [(0.5, 0.5), (0.6, 0.6)], "cores": PADDLE}
     with pytest.raises(ValueError, match=message):
         renderer.frame(Picture(**{**good, field: value}))

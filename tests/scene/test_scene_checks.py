@@ -70,7 +70,7 @@ def test_without_gain_no_max_speed_is_needed():
 
 def test_max_speed_exceeds_every_paddles():
     elements = [paddle(max_speed=1), paddle(max_speed=1.5, name="p"), paddle(max_speed=0.5)]
-    message = "must be greater than 1.5, the max_speed of elements[1] (paddle 'p')"
+    message = "must be greater than 1.5, the fastest that the surface of elements[1] (paddle 'p') moves"
     assert refusals(elements=elements, max_speed=1.5) == [("max_speed", 1.5, message)]
     assert Scene(elements=elements, max_speed=1.6).max_speed == 1.6
 

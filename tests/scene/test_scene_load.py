@@ -31,7 +31,7 @@ ENDS = "start = [0, 0]\nend = [1, 0]"
 CENTER = "center = [0, 0]"
 RAIL = "rail_start = [0, 0]\nrail_end = [0, 0]\nhalf_width = 1\nradius = 1\nmax_speed = 1"
 FLOOR = element("wall", f'{ENDS}\nname = "floor"')
-TYPES = "one of wall, bumper, arc, paddle, sensor, field"
+TYPES = "one of wall, bumper, arc, paddle, flipper, sensor, field"
 SCENE_FIELDS = "unknown field: must be one of gravity, ball, rest_speed, max_speed, drag, elements"
 BALL_FIELDS = "radius, b, f"
 
@@ -188,7 +188,7 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         ("elements = [[]]", "elements[0] = []", "must be a table, under a line [[elements]]"),
         ("[[elements]]", "elements[0]: type", f"required: {TYPES}"),
         ("[[elements]]\ntype = []", "elements[0]: type = []", f"must be {TYPES}"),
-        (element("flipper", ""), "elements[0]: type = 'flipper'", f"must be {TYPES}"),
+        (element("spring", ""), "elements[0]: type = 'spring'", f"must be {TYPES}"),
         (element("Wall", ENDS), "elements[0]: type = 'Wall'", f"must be {TYPES}"),
         (element("wall", "start = [0, 0]"), "elements[0] (wall): end", f"required: {POINT}"),
         (

@@ -14,6 +14,7 @@ from bounce_env.scene import (
     Ball,
     Bumper,
     Field,
+    Flipper,
     Paddle,
     Scene,
     Sensor,
@@ -56,6 +57,24 @@ ELEMENT = st.one_of(
         max_speed=SIZE,
         **SURFACE,
     ),
+    st.builds(
+        lambda ends, **fields: Bumper(ends[0], rail_end=ends[1], **fields),
+        SEGMENT,
+        radius=SIZE,
+        speed=SIZE,
+        **SURFACE,
+    ),
+    st.builds(
+        lambda rest, stroke, **fields: Flipper(rest_angle=rest, active_angle=rest + stroke, **fields),
+        st.floats(-10.0, 10.0),
+        st.floats(0.01, 6.28) | st.floats(-6.28, -0.01),
+        pivot=POINT,
+        length=SIZE,
+        radius=SIZE,
+        up_speed=SIZE,
+        down_speed=SIZE,
+        **SURFACE,
+    ),
     st.builds(lambda ends, drain: Sensor(*ends, drain=drain), SEGMENT, st.booleans()),
     st.builds(
         lambda center, radius, drain: Sensor(center=center, radius=radius, drain=drain), POINT, SIZE, st.booleans()
@@ -78,7 +97,7 @@ SCENE = st.builds(
     gravity=POINT,
     ball=st.builds(Ball, st.just(0.0) | SIZE, FACTOR, st.floats(0.0, 1.0)),
     rest_speed=st.just(0.0) | SIZE,
-    max_speed=st.floats(10.0, 1e9, exclude_min=True),
+    max_speed=st.floats(200.0, 1e9, exclude_min=True),
     drag=st.floats(0.01, 1.0),
 )
 

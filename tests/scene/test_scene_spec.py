@@ -9,12 +9,16 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bounce_env.scene import Arc, Ball, Bumper, Field, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall
 
 SEGMENT = {"start": (0.0, 0.0), "end": (3.0, 4.0)}
 CIRCLE = {"center": (0.0, 0.0), "radius": 1.0}
 RAIL = {"rail_start": (0.0, 0.0), "rail_end": (3.0, 4.0), "half_width": 0.1, "radius": 0.1, "max_speed": 1.0}
 ARC = {**CIRCLE, "start_angle": 0.0, "end_angle": 2.0}
+TURNING = {
+    "pivot": (0.0, 0.0), "length": 2.0, "radius": 0.1, "rest_angle": -0.5, "active_angle": 0.5, "up_speed": 35.0,
+    "down_speed": 17.0,
+}  # fmt: skip
 TRIANGLE = {"points": ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)), "acceleration": (0.0, 1.0)}
 GOOD = {
     Ball: {},
@@ -22,6 +26,7 @@ GOOD = {
     Bumper: CIRCLE,
     Arc: ARC,
     Paddle: RAIL,
+    Flipper: TURNING,
     Sensor: SEGMENT,
     Field: TRIANGLE,
     Scene: {},
@@ -43,7 +48,7 @@ SURFACE = {
 }
 
 NUMBERS = [
-    *((spec, field, words) for spec in (Wall, Bumper, Arc, Paddle) for field, words in SURFACE.items()),
+    *((spec, field, words) for spec in (Wall, Bumper, Arc, Paddle, Flipper) for field, words in SURFACE.items()),
     (Ball, "radius", ZERO_OR_POSITIVE),
     (Ball, "b", ZERO_OR_MORE),
     (Ball, "f", ZERO_TO_ONE),
@@ -52,6 +57,8 @@ NUMBERS = [
     (Paddle, "half_width", ZERO_OR_POSITIVE),
     (Paddle, "radius", POSITIVE),
     (Paddle, "max_speed", POSITIVE),
+    *((Flipper, field, POSITIVE) for field in ("length", "radius", "up_speed", "down_speed")),
+    (Bumper, "speed", ZERO_OR_POSITIVE),
     (Scene, "max_speed", POSITIVE),
     (Scene, "rest_speed", ZERO_OR_POSITIVE),
     (Scene, "drag", SHARE),
@@ -197,7 +204,7 @@ def test_a_missing_field_says_what_it_takes(spec, given, missing):
     [
         (Ball, "mass", "radius, b, f"),
         (Wall, "draggable", f"start, end, one_way, {', '.join(SURFACE)}, name"),
-        (Bumper, "one_way", f"center, radius, {', '.join(SURFACE)}, name"),
+        (Bumper, "one_way", f"center, radius, rail_end, speed, {', '.join(SURFACE)}, name"),
         (Arc, "angle", f"center, radius, start_angle, end_angle, {', '.join(SURFACE)}, name"),
         (Paddle, "width", f"rail_start, rail_end, half_width, radius, max_speed, {', '.join(SURFACE)}, name"),
         (Sensor, "b", "start, end, center, radius, drain, name"),
@@ -242,7 +249,7 @@ def test_a_name_is_printable_text(value):
 
 
 def test_a_scene_takes_specs_only():
-    allowed = "must be a Wall, Bumper, Arc, Paddle, Sensor or Field"
+    allowed = "must be a Wall, Bumper, Arc, Paddle, Flipper, Sensor or Field"
     ball = Ball()
     assert refusals(Scene, elements=[Wall(**SEGMENT), 3, ball]) == [
         ("elements.1", 3, allowed),
@@ -250,7 +257,7 @@ def test_a_scene_takes_specs_only():
     ]
     assert refusals(Scene, ball={"radius": 1}) == [("ball", {"radius": 1}, "must be a Ball")]
     for elements in ({Wall(**SEGMENT)}, Wall(**SEGMENT), None, "wall", iter([])):
-        message = "must be a tuple or list of Wall, Bumper, Arc, Paddle, Sensor and Field"
+        message = "must be a tuple or list of Wall, Bumper, Arc, Paddle, Flipper, Sensor and Field"
         assert refusals(Scene, elements=elements) == [("elements", elements, message)]
 
 
@@ -314,3 +321,35 @@ def test_bounds_of_a_scene():
     assert Scene(elements=[Wall((0, 0), (1, 0)), Bumper((5, 5), 2)]).bounds == (0, 0, 7, 7)
     assert Scene(elements=[Wall((3, 4), (5, 6))]).bounds == (3, 4, 5, 6)
     assert Scene().bounds == (0, 0, 0, 0)
+
+
+def test_a_flippers_stroke_is_more_than_nothing_and_at_most_a_turn() -> None:
+    for active in (-0.5, -0.5 + 1e-9, 6.5):
+        with pytest.raises(ValueError, match=r"1e-06 to 2 pi radians more or less than rest_angle = -0\.5"):
+            Flipper(**{**TURNING, "active_angle": active})
+    assert Flipper(**TURNING).surface_speed == 35.0 * 2.1
+
+
+def test_a_bumper_moves_with_a_rail_and_a_speed_or_not_at_all() -> None:
+    for fields in ({"speed": 1.0}, {"rail_end": (1.0, 0.0)}):
+        with pytest.raises(ValueError, match=r"speed.*\n.*must be > 0 with a rail_end, and 0 without one"):
+            Bumper((0.0, 0.0), 0.1, **fields)
+    with pytest.raises(ValueError, match="away from center"):
+        Bumper((0.0, 0.0), 0.1, rail_end=(0.0, 0.0), speed=1.0)
+    assert Bumper((0.0, 0.0), 0.5, rail_end=(1.0, 2.0), speed=1.0).bounds == (-0.5, -0.5, 1.5, 2.5)
+
+
+def test_bounds_of_a_flipper_are_what_it_can_reach() -> None:
+    flipper = Flipper((1.0, 1.0), 2.0, radius=0.5, rest_angle=0.0, active_angle=math.pi, up_speed=1.0, down_speed=1.0)
+    assert flipper.bounds == pytest.approx((-1.5, 0.5, 3.5, 3.5))
+
+
+def test_parts_are_the_elements_that_move() -> None:
+    still, moving = Bumper((0.0, 0.0), 0.1), Bumper((0.0, 0.0), 0.1, rail_end=(1.0, 0.0), speed=1.0)
+    scene = Scene(elements=(Wall((0, 0), (1, 0)), Flipper(**TURNING), still, Paddle(**RAIL), moving))
+    assert [i for i, _ in scene.parts] == [1, 3, 4]
+
+
+def test_max_speed_exceeds_that_of_a_flippers_tip() -> None:
+    with pytest.raises(ValueError, match=r"greater than 73.5, the fastest that the surface of elements\[0\]"):
+        Scene(max_speed=73.0, elements=(Flipper(**TURNING),))

@@ -20,11 +20,11 @@ import numpy as np
 from bounce_env.engine import world as engine
 from bounce_env.engine.layout import BUDGET, CRUSHED, OK, OUT
 from bounce_env.engine.world import World
-from bounce_env.scene import Arc, Ball, Bumper, Field, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall
 
 Point: TypeAlias = tuple[float, float]
 Step: TypeAlias = float | tuple[Any, ...]
-Watch: TypeAlias = Callable[[Scene, set[str], Point], None]
+Watch: TypeAlias = Callable[[World, set[str]], None]
 
 ULP = 2.0**-52
 KINDS = ("bounce", "begin", "end", "cross", "stop", "crush")
@@ -46,9 +46,9 @@ class Case:
     """One case. `why` says where the right answer comes from.
 
     script: seconds to advance, or a command as a tuple: ("push", (dvx, dvy)), ("enable", name, bool), ("replace",
-    scene). rows: regular expression of the whole ledger as `Run.text` spells it; None where it is not known. status: of
-    the ball at the end, one of these. refused: what a ValueError says where the start or a command must be refused.
-    keep_ledger: False where it is too long to be looked at.
+    scene), ("command", name, value). rows: regular expression of the whole ledger as `Run.text` spells it; None where
+    it is not known. status: of the ball at the end, one of these. refused: what a ValueError says where the start or a
+    command must be refused. keep_ledger: False where it is too long to be looked at.
     """
 
     name: str
@@ -159,17 +159,19 @@ _ALL = (
     Sensor((4, 0), (5, 0), name="line"),
     Sensor(center=(5, 0), radius=0.5, name="circle"),
     Field(((6, 0), (7, 0), (7, 1)), (1, 0), name="field"),
+    Paddle((0, 2), (1, 2), half_width=0.25, radius=0.25, max_speed=1, name="paddle"),
+    Flipper((2, 2), 1, radius=0.25, rest_angle=0, active_angle=1, up_speed=1, down_speed=1, name="flipper"),
 )
 
 
 def everything(point: bool) -> Scene:
-    """A scene with all that stands still, which no ball is put into: packed beside another, it brings its features."""
+    """A scene with one of everything, which no ball is put into: packed beside another, it brings its features."""
     ball = Ball(radius=0.0 if point else 0.25)
     return Scene(ball=ball, rest_speed=0.25, drag=0.5, max_speed=100, elements=_ALL)
 
 
 def new_world(scene: Scene, *, lean: bool = False) -> World:
-    """A world of the scene, in the kernel that has every feature of standing scenes, or in the scene's own.
+    """A world of the scene, in the kernel that has every feature, or in the scene's own.
 
     There is one kernel for each set of features, and it takes long to compile. With the one that has them all, the
     whole suite needs one for discs and one for points; a soak runs it in the lean ones, too.
@@ -186,12 +188,12 @@ def _general(act: Callable[[], Any]) -> Any:
 def play(case: Case, *, pieces: int = 1, restored: bool = False, lean: bool = False, watch: Watch | None = None) -> Run:
     """Play a case: each duration in `pieces` uneven pieces.
 
-    restored: each piece in a new world from a snapshot. watch: called after each piece with the scene, the names of the
-    elements that are switched off, and the ball's centre.
+    restored: each piece in a new world from a snapshot. watch: called after each piece with the world and the names of
+    the elements that are switched off.
     """
     run = Run(_names(case.scene))
     pages: list[np.ndarray] = []
-    scene, off = case.scene, set[str]()
+    off = set[str]()
     try:
         world = new_world(case.scene, lean=lean)
         world.reset(position=case.position, velocity=case.velocity)
@@ -199,7 +201,7 @@ def play(case: Case, *, pieces: int = 1, restored: bool = False, lean: bool = Fa
             if isinstance(step, tuple):
                 _command(world, step, lean)
                 if step[0] == "replace":
-                    scene, off = step[1], set()
+                    off = set()
                 elif step[0] == "enable":
                     (off.discard if step[2] else off.add)(step[1])
             else:
@@ -210,7 +212,7 @@ def play(case: Case, *, pieces: int = 1, restored: bool = False, lean: bool = Fa
                     if case.keep_ledger and rows is not None:
                         pages.append(rows)
                     if watch is not None:
-                        watch(scene, off, tuple(world.position[0].tolist()))
+                        watch(world, off)
             run.states.append(world.position.tobytes() + world.velocity.tobytes())
     except ValueError as error:
         run.refusal = str(error)

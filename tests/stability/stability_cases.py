@@ -1,5 +1,7 @@
-"""All cases of standing scenes."""
+"""All cases, of standing scenes and of moving ones."""
 
+from moving_flippers import FLIPPERS
+from moving_paddles import PADDLES
 from standing_commands import COMMANDS
 from standing_corners import CORNERS
 from standing_corridors import CORRIDORS
@@ -19,5 +21,5 @@ from standing_wedges import WEDGES
 
 CASES = [
     *DROPS, *HOLDS, *SLIDES, *CORRIDORS, *CORNERS, *WEDGES, *CURVES, *HOLLOWS, *STARTS, *EXTREMES, *PASSAGES, *FIELDS,
-    *KICKS, *COMMANDS, *ROOMS, *TAILS,
+    *KICKS, *COMMANDS, *ROOMS, *TAILS, *PADDLES, *FLIPPERS,
 ]  # fmt: skip

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from stability_case import Case, Point, Run, Step
 
-from bounce_env.scene import Arc, Bumper, Element, Field, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Bumper, Element, Field, Flipper, Paddle, Scene, Sensor, Wall
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,19 @@ class Image:
         if isinstance(element, Field):
             changes["points"] = tuple(self.point(p) for p in element.points)
             changes["acceleration"] = self.point(element.acceleration, self.time**2)
-        if isinstance(element, Wall | Bumper | Arc):
+        if isinstance(element, Bumper) and element.rail_end is not None:
+            changes |= {"rail_end": self.point(element.rail_end), "speed": self.speed(element.speed)}
+        if isinstance(element, Paddle):
+            changes |= {"rail_start": self.point(element.rail_start), "rail_end": self.point(element.rail_end)}
+            changes |= {"half_width": element.half_width * self.length, "radius": element.radius * self.length}
+            changes["max_speed"] = self.speed(element.max_speed)
+        if isinstance(element, Flipper):
+            changes |= {"pivot": self.point(element.pivot), "length": element.length * self.length}
+            changes |= {"up_speed": element.up_speed / self.time, "down_speed": element.down_speed / self.time}
+            changes["radius"] = element.radius * self.length
+            if self.upside_down:
+                changes |= {"rest_angle": -element.rest_angle, "active_angle": -element.active_angle}
+        if isinstance(element, Wall | Bumper | Arc | Paddle | Flipper):
             changes |= {"kick": self.speed(element.kick), "kick_threshold": self.speed(element.kick_threshold)}
             changes["cooldown"] = element.cooldown * self.time
         return replace(element, **changes)
@@ -62,6 +74,8 @@ class Image:
         match step:
             case ("push", velocity):
                 return ("push", self.point(velocity, self.time))
+            case ("command", name, float(value)):
+                return ("command", name, self.speed(value))
             case ("replace", scene):
                 return ("replace", self.scene(scene))
             case tuple():

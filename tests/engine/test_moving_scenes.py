@@ -1,0 +1,108 @@
+"""Whatever moves in a closed scene, however it is commanded: no ball escapes, sinks in, or stops without a reason."""
+
+from collections import Counter
+from unittest import mock
+
+import numpy as np
+from conftest import soak_count
+from moving_scenes import command_at_random, moving_scene, start
+
+from bounce_env import Ball, Bumper, Flipper, Paddle, Scene, Wall
+from bounce_env.engine import world as engine
+from bounce_env.engine.layout import BUDGET, CRUSHED, OK
+from bounce_env.engine.overlap import gaps
+from bounce_env.engine.world import World
+
+SECONDS = 20.0
+EVENTS = 20_000  # in one call
+ALL = Scene(
+    ball=Ball(radius=0.1),
+    max_speed=300.0,
+    elements=(
+        Wall((0, 0), (1, 0)),
+        Bumper((1, 1), 0.1),
+        Flipper((0, 2), 1.0, radius=0.1, rest_angle=0.0, active_angle=1.0, up_speed=1.0, down_speed=1.0),
+        Paddle((0, 0), (1, 0), half_width=0.1, radius=0.1, max_speed=1.0),
+    ),
+)
+
+
+def new_world(scene: Scene, balls: int) -> World:
+    """A world of the scene in the kernel that has all features of moving scenes: one kernel for all of them."""
+    pack = engine.pack
+    with mock.patch.object(engine, "pack", lambda scenes: pack([*scenes, ALL])):
+        return World(scene, balls)
+
+
+def is_clear(world: World) -> bool:
+    """Whether no ball is deeper than 1e-9 m inside of a wall, a part or another ball, or outside of the box."""
+    radius, place = world.scene.ball.radius, world.position
+    cores = {
+        index: ((x0, y0), (x1, y1))
+        for (index, _), (x0, y0, x1, y1) in zip(world.scene.parts, world.cores.tolist(), strict=True)
+    }
+    apart = np.hypot(*(place[:, None] - place[None, :]).T) + 10.0 * np.eye(len(place))
+    return bool(
+        np.isfinite(world.velocity).all()
+        and (np.abs(place - 0.5) <= 0.5 - radius + 1e-9).all()
+        and apart.min() >= 2.0 * radius - 1e-9
+        and min(gap for x, y in place.tolist() for _, gap in gaps(world.scene, cores, x, y)) >= -1e-9
+    )
+
+
+def test_moving_scenes() -> None:
+    """Soak: 10^5 scenes with 1 to 5 balls, 20 s each; a command before every piece of them."""
+    counts: Counter[str] = Counter()
+    for seed in range(soak_count(150, 100_000)):
+        rng = np.random.default_rng(seed)
+        scene = moving_scene(rng)
+        world = new_world(scene, int(rng.integers(1, 6)))
+        if not start(rng, world, len(world._state.balls[0])):
+            counts["no room"] += 1
+            continue
+        seen = set()
+        while world.time < SECONDS:
+            command_at_random(rng, world)
+            world.advance(float(rng.choice([0.0078125, 0.125, 0.5, 2.0])), max_events=EVENTS)
+            assert is_clear(world), seed
+            statuses = set(world.status.tolist())
+            assert statuses <= {OK, BUDGET, CRUSHED}, seed
+            seen |= statuses
+            if BUDGET in statuses:
+                # What meets more than its budget allows meets it in due time.
+                before = world.time
+                world.advance(1.0, max_events=EVENTS)
+                assert world.time > before + 1e-7, seed
+                break
+        counts["budget" if BUDGET in seen else "crushed" if CRUSHED in seen else "ok"] += 1
+    print(dict(counts))  # noqa: T201
+    # Piles of balls and slow rolling, all of it in small hops.
+    assert counts["budget"] <= 0.1 * counts.total()
+
+
+def test_pieces_and_snapshots_change_no_bit() -> None:
+    """The time between two commands in one piece, or in four, each in a new world from a snapshot."""
+    for seed in range(soak_count(40, 2000)):
+        rng = np.random.default_rng([seed, 1])
+        scene, count = moving_scene(rng), int(rng.integers(1, 6))
+        whole, pieces = new_world(scene, count), new_world(scene, count)
+        if not start(rng, whole, count):
+            continue
+        pieces.restore(whole.snapshot())
+        for _ in range(8):
+            state = rng.bit_generator.state
+            command_at_random(rng, whole)
+            rng.bit_generator.state = state
+            command_at_random(rng, pieces)
+            seconds = float(rng.choice([0.0625, 0.5]))
+            rows = [whole.advance(seconds, ledger=True, max_events=EVENTS)]
+            if BUDGET in whole.status:
+                break
+            for _ in range(4):
+                other = new_world(scene, count)
+                other.restore(pieces.snapshot())
+                pieces = other
+                rows.append(pieces.advance(seconds / 4, ledger=True, max_events=EVENTS))
+            assert np.concatenate(rows[1:]).tobytes() == rows[0].tobytes(), seed
+            assert pieces.position.tobytes() == whole.position.tobytes(), seed
+            assert pieces.cores.tobytes() == whole.cores.tobytes(), seed

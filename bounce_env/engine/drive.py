@@ -35,16 +35,17 @@ def place(state: State, tables: Tables, w: int, k: int, x: float, y: float, vx: 
     take_sides(state, tables, w, k)
     accelerate(state, tables, w, k)
     ball.ax, ball.ay = ball.gx, ball.gy
-    _leave_zones(state.zones, w, k)
+    _enter_zones(state.zones, w, k)
     resolve_next(ball)
     plan_pairs(state, tables, state.pairs, w, k)
 
 
 @function
-def _leave_zones(zones: Table, w: int, k: int) -> None:
+def _enter_zones(zones: Table, w: int, k: int) -> None:
+    """Until its first flight is planned a ball may be anywhere."""
     if zones is not None:
         for m in range(zones.shape[2]):
-            zones[w, k, m].inside = 0
+            zones[w, k, m].inside = 1
 
 
 @function

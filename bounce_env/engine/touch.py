@@ -49,10 +49,12 @@ def collect_touches(state: State, tables: Tables, w: int, k: int) -> None:
         tables.parts,
         state.motions,
         tables.turns,
+        state.zones,
         head.parts,
         state.touches,
         state.disabled,
         w,
+        k,
         scene,
         head.rest_speed,
     )
@@ -151,16 +153,20 @@ def _touch_parts(
     parts: Table,
     motions: Table,
     turns: Table,
+    zones: Table,
     count: int,
     touches: Table,
     disabled: Table,
     w: int,
+    k: int,
     scene: int,
     rest_speed: float,
 ) -> None:
-    if parts is None or motions is None:
+    if parts is None or motions is None or zones is None:
         return
     for m in range(count):
+        if not zones[w, k, m].inside:
+            continue
         part, motion, turn = parts[scene, m], motions[w, m], turn_of(turns, scene, m)
         x, y, ux, uy = core_at(part, motion, turn, ball.hi, ball.lo)
         dx, dy = ball.x - x, ball.y - y

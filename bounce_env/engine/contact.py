@@ -335,7 +335,10 @@ def _settle(state: State, tables: Tables, w: int, k: int, single: int) -> float:
 def _log_end(state: State, w: int, k: int, support: int, vx: float, vy: float, ledger: Table) -> None:
     """The end of a contact changes no velocity: what does so has rows of its own."""
     ball = state.balls[w, k]
-    new_vx, new_vy = ball.vx, ball.vy
+    new_vx, new_vy, ux, uy = ball.vx, ball.vy, 0.0, 0.0
+    for i in range(ball.touched):
+        if state.touches[w, i].element == support:
+            ux, uy = state.touches[w, i].ux, state.touches[w, i].uy
     ball.vx, ball.vy = vx, vy
-    log(ledger, state.worlds[w], ball, k, support, CONTACT_ENDS, ball.nx, ball.ny, vx, vy, 0.0, 0.0)
+    log(ledger, state.worlds[w], ball, k, support, CONTACT_ENDS, ball.nx, ball.ny, vx, vy, ux, uy)
     ball.vx, ball.vy = new_vx, new_vy

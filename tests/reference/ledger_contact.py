@@ -104,9 +104,9 @@ def projections(bearings: Sequence[Bearing], v: Vector) -> Iterator[Vector]:
 
 
 def along(bearing: Bearing, v: Vector) -> Vector:
-    """The part of a velocity along a surface that stands."""
-    rate = v[0] * bearing.ny - v[1] * bearing.nx
-    return rate * bearing.ny, -rate * bearing.nx
+    """A velocity without what is across a surface, seen from that."""
+    rate = (v[0] - bearing.ux) * bearing.ny - (v[1] - bearing.uy) * bearing.nx
+    return bearing.ux + rate * bearing.ny, bearing.uy - rate * bearing.nx
 
 
 def after_contact(
@@ -114,11 +114,9 @@ def after_contact(
 ) -> Iterator[Vector]:
     """The velocities that a ball may have in contact with a surface, if it comes to it with `v`."""
     pressed = press_on(bearing, v, a) > 0.0
-    if bearing.ux != 0.0 or bearing.uy != 0.0:
-        return
     rests = pressed and (is_friction(f, rules) or swings_out(bearing, v, a, rules))
     if rests or (is_standing(v, a, rules) and is_carried(a, bearings)):
-        yield 0.0, 0.0
+        yield bearing.ux, bearing.uy
     elif pressed and bearing.straight:
         yield along(bearing, v)
 
@@ -151,4 +149,4 @@ def settling(surface: Surface, rules: Rules, v: Vector) -> Settling | None:
         pull = s.ay * s.nx - s.ax * s.ny
         way = slid * tau / (1.0 - f * b) + pull * tau**2 * (1.0 + f * b) / (2.0 * (1.0 - f * b) * (1.0 - b**2))
         slid = way / seconds
-    return Settling(seconds, -slid * s.ny, slid * s.nx, f == 1.0)
+    return Settling(seconds, s.ux - slid * s.ny, s.uy + slid * s.nx, f == 1.0)

@@ -179,8 +179,9 @@ class Known:
         mode = Mode.FLIES
         if bearer is not None:
             mode = self.mode_on(bearer, state)
-            moves = math.hypot(*row.after) > self.blur(row)
-            self.must_end = row.vx1 * bearer.nx + row.vy1 * bearer.ny > self.blur(row) or (mode is Mode.RESTS and moves)
+            wx, wy = row.vx1 - bearer.ux, row.vy1 - bearer.uy
+            moves = math.hypot(wx, wy) > self.blur(row)
+            self.must_end = wx * bearer.nx + wy * bearer.ny > self.blur(row) or (mode is Mode.RESTS and moves)
             mode = Mode.FLIES if self.must_end else mode
         self.ways = [Way(state, mode, bearer)]
 

@@ -95,7 +95,7 @@ class RowChecks(Known):
         end: Settling | None = settling(surface, self.rules, row.after)
         if end is None:
             return None
-        bearer = Bearer(row.element, row.nx, row.ny)
+        bearer = Bearer(row.element, row.nx, row.ny, row.ux, row.uy)
         state = State(row.time, row.x, row.y, end.vx, end.vy)
         return Way(state, Mode.SLIDES if end.slides else Mode.SETTLES, bearer, row.time + end.seconds)
 
@@ -116,7 +116,7 @@ class RowChecks(Known):
         self.ways = [Way(state, Mode.FLIES, None)]
         if own is None:
             return
-        bearer = Bearer(row.element, row.nx, row.ny)
+        bearer = Bearer(row.element, row.nx, row.ny, row.ux, row.uy)
         self.ways = [Way(state, self.mode_on(bearer, state), bearer)]
         self.closes_no_more(index, row)
         bearings = self.bearings(row)
@@ -151,7 +151,7 @@ class RowChecks(Known):
     def has_reason_to_end(self, index: int, row: Row, bearer: Bearer) -> bool:
         """Taken off or pushed off, not pressed any more, switched off, past the wall's end, taken over, or rolling."""
         vx, vy = row.after
-        leaving = vx * bearer.nx + vy * bearer.ny
+        leaving = (vx - bearer.ux) * bearer.nx + (vy - bearer.uy) * bearer.ny
         off = not self.walk.enabled[row.element] or (row.time, False) in self.switches.get(row.element, [])
         if leaving > self.blur(row) or off:
             return True

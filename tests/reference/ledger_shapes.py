@@ -33,7 +33,6 @@ class Line:
     length: float
     reach: float
     one_way: bool = False
-    curvature: float = 0.0  # as the law takes it
 
 
 @dataclass(frozen=True)
@@ -108,8 +107,8 @@ class Shapes:
         elif isinstance(element, Paddle):
             ex, ey, _ = direction(element.rail_start, element.rail_end)
             half, reach = element.half_width, element.radius + self.ball
-            # About the paddle's centre. The law takes all of a paddle for a curve, of the radius of its caps.
-            yield Line(index, -half * ex, -half * ey, ex, ey, 2.0 * half, reach, curvature=1.0 / reach)
+            # About the paddle's centre.
+            yield Line(index, -half * ex, -half * ey, ex, ey, 2.0 * half, reach)
             yield Round(index, -half * ex, -half * ey, reach, index)
             yield Round(index, half * ex, half * ey, reach, index)
 
@@ -152,8 +151,7 @@ def _touching_line(line: Line, x: Floats, y: Floats, vx: Floats, vy: Floats) -> 
     else:
         left = np.where(height >= 0.0, 1.0, -1.0)
     margin = np.minimum(along, line.length - along)
-    curvature = np.full_like(along, line.curvature)
-    return Touching(left * height - line.reach, -left * line.ey, left * line.ex, curvature, margin)
+    return Touching(left * height - line.reach, -left * line.ey, left * line.ex, np.zeros_like(along), margin)
 
 
 def _bow_margin(bow: Bow, x: Floats, y: Floats) -> Floats:

@@ -117,8 +117,7 @@ class Touches:
                 out = known.get(feature.element, (-way[0], -way[1]))
                 if out[0] * nx + out[1] * ny < 0.0:
                     nx, ny, curvature = -nx, -ny, -curvature
-            straight = isinstance(feature, Line) and feature.curvature == 0.0
-            found.append(Bearing(feature.element, nx, ny, ux, uy, curvature, straight))
+            found.append(Bearing(feature.element, nx, ny, ux, uy, curvature, isinstance(feature, Line)))
         return found
 
     def _add(

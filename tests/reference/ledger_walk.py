@@ -38,11 +38,13 @@ class Mode(Enum):
 
 
 class Bearer(NamedTuple):
-    """The element that a ball is in contact with, and its unit normal there."""
+    """The element that a ball is in contact with, its unit normal there, and the velocity of its surface [m/s]."""
 
     element: int
     nx: float
     ny: float
+    ux: float
+    uy: float
 
 
 class Mark(NamedTuple):
@@ -150,8 +152,8 @@ class Walk:
             if self.bearer is not None and self.mode is not Mode.RESTS and seconds > 0.0:
                 into = ax * self.bearer.nx + ay * self.bearer.ny
                 self.unpressed |= into >= -PRESSING * math.hypot(ax, ay)
-            if self.mode is Mode.RESTS:
-                s = s._replace(vx=0.0, vy=0.0)
+            if self.mode is Mode.RESTS and self.bearer is not None:
+                s = s._replace(vx=self.bearer.ux, vy=self.bearer.uy)
             piece = Piece(s.time, seconds, s.x, s.y, s.vx, s.vy, *self._borne(ax, ay), element, row)
             self.pieces.append(piece)
             self.state = State(until if last else s.time + seconds, *piece.at(seconds))

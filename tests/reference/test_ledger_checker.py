@@ -100,6 +100,13 @@ def commanded():
     return play(scene, (0.3, 0.7), (0.1, 0.0), 2.25, script)
 
 
+def on_a_paddle(f):
+    """Bounces on a paddle that end in contact: with f < 1 it takes the ball along, with f = 1 it slides away."""
+    paddle = Paddle((0.5, 0.2), (1.5, 0.2), half_width=0.2, radius=0.02, max_speed=1.0, b=0.3, f=f, name="paddle")
+    script = ((1.0, "paddle", 0.3), (1.5, "paddle", -0.4), (2.25, "paddle", 0.1))
+    return play(whole(*box(2.0, 1.0), paddle), (1.0, 0.5), (0.05, 0.0), 4.0, script)
+
+
 RUNS = {
     "box": lambda: play(load_scene("box"), (0.5, 1.3), (0.3, 0.2), 20.0),
     "pegs": lambda: play(load_scene("pegs"), (0.5, 1.3), (0.3, 0.2), 2.0),
@@ -111,6 +118,8 @@ RUNS = {
     "hollow": hollow,
     "passages": passages,
     "commanded": commanded,
+    "taken along by a paddle": lambda: on_a_paddle(0.7),
+    "sliding on a paddle": lambda: on_a_paddle(1.0),
 }
 
 

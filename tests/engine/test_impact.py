@@ -38,8 +38,8 @@ def test_falling_time_is_the_falling_root(gap: float, rate: float, pull: float) 
         else:
             root = mpmath.sqrt(square)
             expected = 2 * g / (root - r) if r < 0 else (r + root) / -a
-        if expected > 1e300:  # no run is that long, and it may be more than a float holds
-            assert t > 1e300
+        if expected > 1e100:  # no run is that long; what it is made of may have lost digits, or be too large for a float
+            assert t > 1e99
         else:
             # Where the two terms under the root nearly cancel, the root itself is that ill-conditioned.
             condition = 1 + (r * r + abs(2 * a * g)) / abs(square)

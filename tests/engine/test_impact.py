@@ -38,7 +38,7 @@ def test_falling_time_is_the_falling_root(gap: float, rate: float, pull: float) 
         else:
             root = mpmath.sqrt(square)
             expected = 2 * g / (root - r) if r < 0 else (r + root) / -a
-        if expected > 1e100:  # no run is that long; what it is made of may have lost digits, or be too large for a float
+        if expected > 1e100:  # no run is that long; it may be made of numbers that have lost digits
             assert t > 1e99
         else:
             # Where the two terms under the root nearly cancel, the root itself is that ill-conditioned.

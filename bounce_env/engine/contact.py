@@ -49,9 +49,12 @@ from bounce_env.engine.touch import collect_touches
 
 
 @function
-def resolve(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
-    """Bounce a ball from all that it touches, decide what it does next, and plan that."""
-    ball = state.balls[w, k]
+def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger: Table) -> None:
+    """Bounce a ball from all that it touches, decide what it does next, and plan that.
+
+    at_once: whether its flight has ended where it began, by something that it was to hit.
+    """
+    ball, bounces = state.balls[w, k], state.worlds[w].bounces
     if abs(ball.vx) + abs(ball.vy) < STANDING:
         ball.vx, ball.vy = 0.0, 0.0
     extent = tables.scenes[state.worlds[w].scene].extent
@@ -74,8 +77,8 @@ def resolve(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None
         corner = corner if i < 0 else -1
     if corner >= 0:
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
-    if ball.contact == FLYING and (tables.gravity is not None or tables.arcs is not None):
-        _roll(state, tables, w, k, ledger)
+    if ball.contact == FLYING:
+        _hop(state, tables, w, k, at_once, bounces, ledger)
     face_crossings(state, tables, w, k)
     vx, vy, duration = ball.vx, ball.vy, -1.0
     if tables.gravity is not None and single >= 0 and ball.contact == FLYING:
@@ -273,6 +276,18 @@ def _support(ball: Record, touch: Record) -> None:
 
 
 @function
+def _hop(state: State, tables: Tables, w: int, k: int, at_once: bool, bounces: int, ledger: Table) -> None:
+    """Let a ball that flies go on in small hops along what it is pressed on, where that is no wall or the like.
+
+    bounces: how many there had been when the ball came here, at once or not.
+    """
+    if tables.gravity is not None or tables.arcs is not None:
+        _roll(state, tables, w, k, ledger)
+    if at_once and state.worlds[w].bounces == bounces:
+        _leave_part(state, tables.parts, w, k, ledger)
+
+
+@function
 def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     """Let a ball that flies along a curve which it is pressed on leave it with the smallest rebound: one small hop.
 
@@ -294,11 +309,46 @@ def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     vx0, vy0 = ball.vx, ball.vy
     ball.vx, ball.vy = vx0 + hop * touch.nx, vy0 + hop * touch.ny
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    _keep_off(state, w, k, ledger)
+
+
+@function
+def _keep_off(state: State, w: int, k: int, ledger: Table) -> None:
+    """After a small hop: let the ball leave along what the hop closes on."""
+    ball = state.balls[w, k]
     other, closing = fastest_closing(ball, state.touches, w)
     if other >= 0:
         touch, vx0, vy0 = state.touches[w, other], ball.vx, ball.vy
         ball.vx, ball.vy = vx0 + closing * touch.nx, vy0 + closing * touch.ny
         count_bounce(state, w, k, touch, vx0, vy0, ledger)
+
+
+@function
+def _leave_part(state: State, parts: Table, w: int, k: int, ledger: Table) -> None:
+    """Let a ball leave a part that it touches with the smallest rebound: one small hop, as along a curve.
+
+    Between a part that moves and something else it may be pressed on both and close on neither.
+    """
+    if parts is None:
+        return
+    ball, index = state.balls[w, k], -1
+    for i in range(ball.touched):
+        touch = state.touches[w, i]
+        if touch.part >= 0 and (index < 0 or _towards(touch) > _towards(state.touches[w, index])):
+            index = i
+    if index < 0:
+        return
+    touch = state.touches[w, index]
+    vx0, vy0 = ball.vx, ball.vy
+    ball.vx, ball.vy = vx0 + touch.least * touch.nx, vy0 + touch.least * touch.ny
+    count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    _keep_off(state, w, k, ledger)
+
+
+@function
+def _towards(touch: Record) -> float:
+    """How fast [m/s] a touched surface moves towards the ball."""
+    return touch.ux * touch.nx + touch.uy * touch.ny
 
 
 @function

@@ -91,7 +91,7 @@ TOUCH = record(
     nx="f8", ny="f8", ux="f8", uy="f8",  # unit normal to the ball, velocity of the surface [m/s]
     bend="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
     along="f8", length="f8",  # [m] of a straight one: where on it the ball is, with the normal on its left
-    least="f8",  # [m/s] the smallest rebound from a part that turns or stretches
+    least="f8",  # [m/s] the smallest rebound from a part, where there is one
     moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
     element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
 )  # fmt: skip

@@ -171,7 +171,8 @@ def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     snap(ball, tables, state.motions, w, scene)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     vx, vy = ball.vx, ball.vy
-    resolve(state, tables, w, k, ledger)
+    at_once = t == 0.0 and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
+    resolve(state, tables, w, k, at_once, ledger)
     if ball.status == CRUSHED:
         crush(state, tables, state.motions, tables.parts, w, k, vx, vy, ledger)
 

@@ -177,10 +177,10 @@ def _touch_parts(
         if turn != 0:
             vx, vy = -spin * (nearest * uy + part.radius * ny), spin * (nearest * ux + part.radius * nx)
             reach = part.front + part.reach
-            pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
-            least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * reach) * reach))
         else:
-            vx, vy, least = motion.velocity * ux, motion.velocity * uy, 0.0
+            vx, vy, reach = motion.velocity * ux, motion.velocity * uy, part.reach
+        pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+        least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * reach) * reach))
         # Where the straight side passes into the round end both are touched.
         for straight in (True, False):
             if straight and not part.back < nearest < part.front:

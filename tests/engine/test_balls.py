@@ -129,14 +129,14 @@ def test_mirror_image_is_the_same_to_the_bit() -> None:
 
 def test_a_drained_ball_is_out_and_the_others_go_on() -> None:
     scene = replace(FREE, elements=(Sensor((-2, -1), (0.5, -1), drain=True, name="drain"), *FREE.elements))
-    world = started(scene, [(0.0, 0.0), (1.0, 0.0)], [(0.0, -1.0), (0.0, -1.0)])
-    world.advance(1.5)
+    world = started(scene, [(0.0, 0.0), (1.0, 0.125)], [(0.0, -1.0), (0.0, -1.0)])
+    world.advance(1.0)
     assert world.status.tolist() == [OUT, OK]
-    assert world.position.tolist() == [[0.0, -1.0], [1.0, -1.5]]
-    world.push((-1.0, 1.5))  # through the place where the other one went out: nothing is there
+    assert world.position.tolist() == [[0.0, -1.0], [1.0, -0.875]]
+    world.push((-1.0, 1.0))  # over where the other one went out, nearer than its radius: nothing is there
     world.advance(2.0)
-    assert world.velocity[1].tolist() == [-1.0, 0.5]
-    assert world.position[1].tolist() == [-1.0, -0.5]
+    assert world.velocity[1].tolist() == [-1.0, 0.0]
+    assert world.position[1].tolist() == [-1.0, -0.875]
 
 
 def test_a_pile_stays_where_it_is() -> None:

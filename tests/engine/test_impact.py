@@ -31,6 +31,8 @@ def test_falling_time_is_the_falling_root(gap: float, rate: float, pull: float) 
         square = r * r - 2 * a * g
         if abs(square) < mpmath.mpf(10) ** -12 * (r * r + abs(a * g) + mpmath.mpf(10) ** -300):
             return  # a graze: touching is not falling through, and round-off decides
+        if 0 < r * r + abs(2 * a * g) < mpmath.mpf(10) ** -290:
+            return  # the squares are subnormal numbers, or nearly so, and have lost digits
         if a == 0:
             expected = g / -r if r < 0 else mpmath.inf
         elif square < 0 or (a > 0 and r >= 0):
@@ -38,8 +40,8 @@ def test_falling_time_is_the_falling_root(gap: float, rate: float, pull: float) 
         else:
             root = mpmath.sqrt(square)
             expected = 2 * g / (root - r) if r < 0 else (r + root) / -a
-        if expected > 1e100:  # no run is that long; it may be made of numbers that have lost digits
-            assert t > 1e99
+        if expected > 1e300:  # no run is that long, and it may be more than a float holds
+            assert t > 1e300
         else:
             # Where the two terms under the root nearly cancel, the root itself is that ill-conditioned.
             condition = 1 + (r * r + abs(2 * a * g)) / abs(square)

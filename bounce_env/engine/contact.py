@@ -33,6 +33,7 @@ from bounce_env.engine.resolve import (
     rolling_speed,
     slow_speed,
     take_vague,
+    towards,
 )
 from bounce_env.engine.search import plan_rest, plan_standing
 from bounce_env.engine.tolerances import (
@@ -334,7 +335,7 @@ def _leave_part(state: State, parts: Table, w: int, k: int, ledger: Table) -> No
     ball, index = state.balls[w, k], -1
     for i in range(ball.touched):
         touch = state.touches[w, i]
-        if touch.part >= 0 and (index < 0 or _towards(touch) > _towards(state.touches[w, index])):
+        if touch.part >= 0 and (index < 0 or towards(touch) > towards(state.touches[w, index])):
             index = i
     if index < 0:
         return
@@ -343,12 +344,6 @@ def _leave_part(state: State, parts: Table, w: int, k: int, ledger: Table) -> No
     ball.vx, ball.vy = vx0 + touch.least * touch.nx, vy0 + touch.least * touch.ny
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
     _keep_off(state, w, k, ledger)
-
-
-@function
-def _towards(touch: Record) -> float:
-    """How fast [m/s] a touched surface moves towards the ball."""
-    return touch.ux * touch.nx + touch.uy * touch.ny
 
 
 @function

@@ -14,7 +14,7 @@ from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import CRUSH, CRUSHED, FLYING, HELD, OK, OUT, PART_STOPS, RESOLVE, State, Tables
 from bounce_env.engine.pairs import plan_pairs
-from bounce_env.engine.parts import core_at, offset_at, plan_zones, stop_instant, turn_of
+from bounce_env.engine.parts import core_at, kept_offset, plan_zones, stop_instant, surface_velocity, turn_of
 from bounce_env.engine.resolve import log
 from bounce_env.engine.search import plan_parts, pull, resolve_next
 from bounce_env.engine.tolerances import CLEARANCE
@@ -118,7 +118,7 @@ def command_unwatched(
 @function
 def set_off(motion: Record, part: Record, world: Record, velocity: float) -> None:
     """Start a commanded motion from the part's place: against a stop it stands, or turns back if it is a shuttle."""
-    motion.offset = min(max(offset_at(motion, world.time_hi, world.time_lo), 0.0), part.span)
+    motion.offset = kept_offset(motion, part, world.time_hi, world.time_lo)
     motion.hi, motion.lo = world.time_hi, world.time_lo
     motion.command = velocity
     back = -velocity if part.shuttle > 0.0 else 0.0
@@ -168,33 +168,23 @@ def _halt(
 ) -> None:  # fmt: skip
     """Let part `m` stop at `offset` at the instant (hi, lo): it stands there, or turns back if it is a shuttle."""
     _end_rides(state, tables, w, m)
-    velocity = motion.velocity
     motion.hi, motion.lo, motion.offset = hi, lo, offset
-    motion.velocity = -velocity if part.shuttle > 0.0 else 0.0
+    turn = turn_of(tables.turns, world.scene, m)
+    x, y, ux, uy = core_at(part, motion, turn, hi, lo)
+    # Of a part that turns the ledger tells of its tip, of one that slides of its middle.
+    rx, ry = (part.front * ux, part.front * uy) if turn != 0 else (0.0, 0.0)
+    vx, vy = surface_velocity(motion, turn, ux, uy, rx, ry)
+    motion.velocity = -motion.velocity if part.shuttle > 0.0 else 0.0
     if part.shuttle > 0.0:
         motion.command = motion.velocity
     if ledger is not None:
         row = ledger[world.rows]
-        row.time, row.ball, row.element, row.kind = motion.hi, -1, part.element, PART_STOPS
-        turn = turn_of(tables.turns, world.scene, m)
-        x, y, ux, uy = core_at(part, motion, turn, motion.hi, motion.lo)
-        # Of a part that turns: where its tip is, and how fast.
-        reach = part.front if turn != 0 else 0.0
-        row.x, row.y = x + reach * ux, y + reach * uy
-        row.nx, row.ny, row.ux, row.uy = 0.0, 0.0, 0.0, 0.0
-        row.vx0, row.vy0 = _of_tip(velocity, turn, reach, ux, uy)
-        row.vx1, row.vy1 = _of_tip(motion.velocity, turn, reach, ux, uy)
+        row.time, row.ball, row.element, row.kind = hi, -1, part.element, PART_STOPS
+        row.x, row.y, row.nx, row.ny, row.ux, row.uy = x + rx, y + ry, 0.0, 0.0, 0.0, 0.0
+        row.vx0, row.vy0 = vx, vy
+        row.vx1, row.vy1 = surface_velocity(motion, turn, ux, uy, rx, ry)
         world.rows += 1
     replan_part(state, tables, state.zones, w, m)
-
-
-@function
-def _of_tip(velocity: float, turn: int, reach: float, ux: float, uy: float) -> tuple[float, float]:
-    """Velocity [m/s] of what a part's stop is told by: the middle of one that slides, the tip of one that turns."""
-    if turn == 0:
-        return velocity * ux, velocity * uy
-    spin = turn * velocity
-    return -spin * reach * uy, spin * reach * ux
 
 
 @function
@@ -233,7 +223,7 @@ def block(state: State, tables: Tables, motions: Table, parts: Table, w: int, m:
         return
     world = state.worlds[w]
     motion, part = motions[w, m], parts[world.scene, m]
-    offset = min(max(offset_at(motion, world.time_hi, world.time_lo), 0.0), part.span)
+    offset = kept_offset(motion, part, world.time_hi, world.time_lo)
     _halt(state, tables, motion, part, world, w, m, offset, world.time_hi, world.time_lo, ledger)
 
 
@@ -252,7 +242,7 @@ def _mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w:
         nx, ny, distance, nearest = on_capsule(ball.x - x, ball.y - y, ux, uy, part.back, part.front)
         if distance - part.reach > 2.0 * CLEARANCE * tables.scenes[world.scene].extent:
             continue
-        vx, vy = _of_tip(motion.velocity, turn, nearest, ux, uy)
+        vx, vy = surface_velocity(motion, turn, ux, uy, nearest * ux, nearest * uy)
         closing = vx * nx + vy * ny
         if closing > 0.0:
             motion.velocity = 0.0

@@ -42,6 +42,21 @@ def offset_at(motion: Record, hi: float, lo: float) -> float:
 
 
 @function
+def kept_offset(motion: Record, part: Record, hi: float, lo: float) -> float:
+    """The same, without the rounding by which it may lie beyond a stop."""
+    return min(max(offset_at(motion, hi, lo), 0.0), part.span)
+
+
+@function
+def surface_velocity(motion: Record, turn: int, ux: float, uy: float, rx: float, ry: float) -> tuple[float, float]:
+    """Velocity [m/s] of a point of a part, at (rx, ry) [m] from the pivot of one that turns; the core lies along u."""
+    if turn != 0:
+        spin = turn * motion.velocity
+        return -spin * ry, spin * rx
+    return motion.velocity * ux, motion.velocity * uy
+
+
+@function
 def core_at(part: Record, motion: Record, turn: int, hi: float, lo: float) -> tuple[float, float, float, float]:
     """Where a part is at an instant of its present motion: (x, y) [m] and the unit vector along its core."""
     offset = offset_at(motion, hi, lo)
@@ -90,43 +105,39 @@ def plan_zones(
     if parts is None or zones is None:
         return
     for m in range(tables.scenes[scene].parts):
-        part, zone = parts[scene, m], zones[w, k, m]
-        turn = turn_of(tables.turns, scene, m)
-        if turn != 0:
-            _plan_circle(ball, part, zone, gx, gy, now)
-        else:
-            _plan_strip(ball, part, zone, gx, gy, now)
+        part, zone, turn = parts[scene, m], zones[w, k, m], turn_of(tables.turns, scene, m)
+        if now == 0.0:
+            zone.inside, zone.after = 1 if _in_zone(ball, part, turn) else 0, 0.0
+        elif zone.after <= now:
+            zone.inside = 1 - zone.inside
+        if zone.after <= now:
+            zone.after = _zone_change(ball, part, turn, gx, gy, zone.inside == 1, now)
+            if zone.after > ball.end_after:
+                zone.after = math.inf
         ball.zone_after = min(ball.zone_after, zone.after)
 
 
 @function
-def _plan_strip(ball: Record, part: Record, zone: Record, gx: Feature, gy: Feature, now: float) -> None:
-    height = (ball.y - part.y) * part.ux - (ball.x - part.x) * part.uy
-    border = ZONE_MARGIN * part.reach
-    if now == 0.0:
-        zone.inside, zone.after = 1 if abs(height) <= border else 0, 0.0
-    elif zone.after <= now:
-        zone.inside = 1 - zone.inside
-    if zone.after <= now:
-        rate = ball.vy * part.ux - ball.vx * part.uy
-        zone.after = strip_change(height, rate, dot(gx, gy, -part.uy, part.ux), border, zone.inside == 1, now)
-        if zone.after > ball.end_after:
-            zone.after = math.inf
+def _in_zone(ball: Record, part: Record, turn: int) -> bool:
+    x, y = ball.x - part.x, ball.y - part.y
+    if turn != 0:
+        border = ZONE_MARGIN * (part.front + part.reach)
+        return x * x + y * y <= border * border
+    return abs(y * part.ux - x * part.uy) <= ZONE_MARGIN * part.reach
 
 
 @function
-def _plan_circle(ball: Record, part: Record, zone: Record, gx: Feature, gy: Feature, now: float) -> None:
+def _zone_change(ball: Record, part: Record, turn: int, gx: Feature, gy: Feature, inside: bool, after: float) -> float:
+    """When the ball next passes the border of a part's zone, from the flight's start, no earlier than `after`."""
     x, y = ball.x - part.x, ball.y - part.y
-    border = ZONE_MARGIN * (part.front + part.reach)
-    if now == 0.0:
-        zone.inside, zone.after = 1 if x * x + y * y <= border * border else 0, 0.0
-    elif zone.after <= now:
-        zone.inside = 1 - zone.inside
-    if zone.after <= now:
-        sense = 1.0 if zone.inside else -1.0
-        zone.after = crossing_time(
-            None, border, sense, x, y, ball.vx, ball.vy, gx, gy, now == 0.0, ball.slack, now, ball.end_after
+    if turn != 0:
+        border, sense = ZONE_MARGIN * (part.front + part.reach), 1.0 if inside else -1.0
+        return crossing_time(
+            None, border, sense, x, y, ball.vx, ball.vy, gx, gy, after == 0.0, ball.slack, after, ball.end_after
         )
+    rate = ball.vy * part.ux - ball.vx * part.uy
+    pull = dot(gx, gy, -part.uy, part.ux)
+    return strip_change(y * part.ux - x * part.uy, rate, pull, ZONE_MARGIN * part.reach, inside, after)
 
 
 @function

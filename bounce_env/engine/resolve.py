@@ -83,6 +83,12 @@ def along_speed(ball: Record, touch: Record) -> float:
 
 
 @function
+def towards(touch: Record) -> float:
+    """How fast [m/s] a touched surface itself moves towards the ball; 0 where it stands."""
+    return touch.ux * touch.nx + touch.uy * touch.ny
+
+
+@function
 def take_vague(ball: Record, touches: Table, w: int) -> None:
     """Take from the velocity what closes on a surface only since another ball's push missed its direction."""
     for i in range(ball.touched):
@@ -148,7 +154,7 @@ def _is_damped(state: State, tables: Tables, w: int, k: int, i: int, closing: fl
     touch = state.touches[w, i]
     material = tables.elements[world.scene, touch.element]
     press = press_of(ball, touch)
-    if touch.moves or touch.ux * touch.nx + touch.uy * touch.ny != 0.0:
+    if touch.moves or towards(touch) != 0.0:
         return False
     if press == 0.0 or (material.kick > 0.0 and closing > material.kick_threshold):
         return False
@@ -192,7 +198,7 @@ def _is_crushed(ball: Record, touch: Record, head: Record) -> bool:
     It is when, not having come further than a clearance from where the part first struck it, it has gone to and fro so
     often, and is struck again.
     """
-    strikes = touch.part >= 0 and touch.ux * touch.nx + touch.uy * touch.ny > 0.0
+    strikes = touch.part >= 0 and towards(touch) > 0.0
     clearance = CLEARANCE * head.extent
     dx, dy = ball.x - ball.sx, ball.y - ball.sy
     caught = ball.struck >= 0 and dx * dx + dy * dy <= clearance * clearance
@@ -297,9 +303,8 @@ def _striker(ball: Record, touches: Table, w: int) -> int:
     """The touched part that moves fastest towards the ball; -1 if none does."""
     best, index = 0.0, -1
     for i in range(ball.touched):
-        towards = touches[w, i].ux * touches[w, i].nx + touches[w, i].uy * touches[w, i].ny
-        if towards > best:
-            best, index = towards, i
+        if towards(touches[w, i]) > best:
+            best, index = towards(touches[w, i]), i
     return index
 
 
@@ -309,7 +314,7 @@ def _squeeze_out(ball: Record, one: Record, other: Record) -> bool:
     turn = one.nx * other.ny - one.ny * other.nx
     if one.nx * other.nx + one.ny * other.ny < -OPPOSED or abs(turn) <= ALIGNED:
         return False
-    a, b = one.ux * one.nx + one.uy * one.ny, other.ux * other.nx + other.uy * other.ny
+    a, b = towards(one), towards(other)
     ball.vx, ball.vy = (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
     return True
 

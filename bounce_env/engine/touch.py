@@ -9,7 +9,7 @@ from bounce_env.engine.arc import in_span
 from bounce_env.engine.impact import beside
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import State, Tables
-from bounce_env.engine.parts import core_at, is_off, turn_of
+from bounce_env.engine.parts import core_at, is_off, surface_velocity, turn_of
 from bounce_env.engine.search import is_gate, side_on
 from bounce_env.engine.tolerances import ROLLING
 
@@ -174,11 +174,9 @@ def _touch_parts(
         if distance > part.reach + ball.slack or is_off(disabled, w, part.element):
             continue
         spin = turn * motion.velocity
-        if turn != 0:
-            vx, vy = -spin * (nearest * uy + part.radius * ny), spin * (nearest * ux + part.radius * nx)
-            reach = part.front + part.reach
-        else:
-            vx, vy, reach = motion.velocity * ux, motion.velocity * uy, part.reach
+        reach = part.front + part.reach if turn != 0 else part.reach
+        rx, ry = nearest * ux + part.radius * nx, nearest * uy + part.radius * ny
+        vx, vy = surface_velocity(motion, turn, ux, uy, rx, ry)
         pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
         least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * reach) * reach))
         # Where the straight side passes into the round end both are touched.

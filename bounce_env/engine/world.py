@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.drive import command, disturb, free_all, place
+from bounce_env.engine.drive import command, disturb, free_all, place, set_off
 from bounce_env.engine.instant import later
 from bounce_env.engine.jit import from_python, kernel
 from bounce_env.engine.layout import LEDGER, OUT, State, Tables, borrow_state, borrow_tables, new_state
@@ -77,6 +77,12 @@ def _place(state: State, tables: Tables, k: int, x: float, y: float, vx: float, 
 def _command(state: State, tables: Tables, part: int, velocity: float) -> None:
     state, tables = borrow_state(state), borrow_tables(tables)
     command(state, tables, state.motions, tables.parts, 0, part, velocity)
+
+
+@kernel
+def _set_off(motions: Any, parts: Any, world: Any, part: int, velocity: float) -> None:
+    """Let a part move before any flight has been planned: no ball has to mind it yet."""
+    set_off(motions[0, part], parts[world[0].scene, part], world[0], velocity)
 
 
 class World:
@@ -230,7 +236,7 @@ class World:
         out = self._state.balls["status"][0] == OUT
         state.balls[0, out] = self._state.balls[0, out]
         for m, velocity in commands.items():
-            _command(state, tables, m, velocity)
+            _set_off(state.motions, tables.parts, state.worlds, m, velocity)
         self.scene, self._tables, self._state, self._parts = scene, tables, state, scene.parts
 
     def _move_parts(self, scene: Scene, state: State, tables: Tables) -> dict[int, float]:
@@ -251,7 +257,6 @@ class World:
             offset = _offset_at(was, motion.hi, motion.lo)
             motion.offset, motion.velocity = min(max(offset, 0.0), float(row.span)), 0.0
             commands[m] = min(max(float(was.command), -float(row.down_speed)), float(row.up_speed))
-            motion.command = math.nan if commands[m] == 0.0 else 0.0  # so that the command is not the one it has
         return commands
 
     def snapshot(self) -> bytes:

@@ -1,21 +1,10 @@
 """Scenes: what a table is made of, and how it is read from a file and written to one."""
 
+from bounce_env.scene.base import Box
+from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Flipper, Paddle, Part, Wall, moves
 from bounce_env.scene.load import SceneError, builtin_scenes, dump_scene, load_scene, scene_from_dict
-from bounce_env.scene.spec import (
-    Arc,
-    Ball,
-    Box,
-    Bumper,
-    Element,
-    Field,
-    Flipper,
-    Paddle,
-    Part,
-    Scene,
-    Sensor,
-    Wall,
-    moves,
-)
+from bounce_env.scene.regions import Field, Sensor
+from bounce_env.scene.spec import Scene
 
 __all__ = [
     "Arc",

@@ -13,7 +13,8 @@ from typing import Any, TypeVar, get_args
 from pydantic import TypeAdapter, ValidationError
 
 from bounce_env.scene.checks import check_scene, label
-from bounce_env.scene.spec import Ball, Element, Scene
+from bounce_env.scene.elements import Ball, Element
+from bounce_env.scene.spec import Scene
 
 _ELEMENT_TYPES: dict[str, type[Element]] = {spec.__name__.lower(): spec for spec in get_args(Element)}
 _BUILTIN = resources.files("bounce_env.scene") / "builtin"

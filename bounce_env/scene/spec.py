@@ -7,7 +7,7 @@ from pydantic.dataclasses import dataclass
 
 from bounce_env.scene.base import CONFIG, Box, Spec, union
 from bounce_env.scene.checks import check_scene
-from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Flipper, Paddle, Part, Wall, moves
+from bounce_env.scene.elements import Ball, Element, Part, moves
 from bounce_env.scene.fields import (
     Allowed,
     PositiveOrNone,
@@ -17,23 +17,6 @@ from bounce_env.scene.fields import (
     instance_of,
     not_allowed,
 )
-from bounce_env.scene.regions import Field, Sensor
-
-__all__ = [
-    "Arc",
-    "Ball",
-    "Box",
-    "Bumper",
-    "Element",
-    "Field",
-    "Flipper",
-    "Paddle",
-    "Part",
-    "Scene",
-    "Sensor",
-    "Wall",
-    "moves",
-]
 
 _Ball = Annotated[Ball, Allowed("a Ball", instance_of(Ball))]
 _Element = Annotated[Element, Allowed("a Wall, Bumper, Arc, Paddle, Flipper, Sensor or Field", instance_of(Element))]

@@ -24,7 +24,7 @@ from pixel_scenes import (
 from bounce_env.engine.overlap import cores_at_start
 from bounce_env.render import Picture, Renderer, painter
 from bounce_env.render.looks import Stroke
-from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
+from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
 
 SIZES = [(84, 84), (256, 384), (400, 560), (None, None)]
 
@@ -357,3 +357,22 @@ def test_a_bad_picture_names_the_field(renderer: Renderer, field: str, value: ob
     good = {"balls": [(0.5, 0.5), (0.6, 0.6)], "cores": PADDLE}
     with pytest.raises(ValueError, match=message):
         renderer.frame(Picture(**{**good, field: value}))
+
+
+def test_parts_are_drawn_where_their_cores_are() -> None:
+    """A flipper along its core at any angle, and a bumper on a rail away from where the scene puts it."""
+    flipper = Flipper((0.5, 0.3), 0.3, radius=0.03, rest_angle=0.0, active_angle=1.0, up_speed=9.0, down_speed=9.0)
+    bumper = Bumper((0.2, 0.8), 0.05, rail_end=(0.8, 0.8), speed=1.0)
+    renderer = Renderer(Scene(elements=(Wall((0, 0), (1, 0)), Wall((0, 1), (1, 1)), flipper, bumper)), 400, 400)
+    color, rim = None, None
+    for angle in np.linspace(0.0, 1.0, 5).tolist():
+        ux, uy = float(np.cos(angle)), float(np.sin(angle))
+        x = 0.2 + 0.6 * angle
+        frame = renderer.frame(Picture(balls=(), cores=[(0.5, 0.3, 0.5 + 0.3 * ux, 0.3 + 0.3 * uy), (x, 0.8, x, 0.8)]))
+        color = frame[_at(renderer, (0.5, 0.3))].tolist() if color is None else color
+        for along, across, covered in ((0.15, 0, True), (0.32, 0, True), (0.36, 0, False), (0.15, 0.05, False)):
+            point = (0.5 + along * ux - across * uy, 0.3 + along * uy + across * ux)
+            assert (frame[_at(renderer, point)].tolist() == color) == covered, (angle, along, across)
+        rim = frame[_at(renderer, (x, 0.8))].tolist() if rim is None else rim
+        assert frame[_at(renderer, (x, 0.8))].tolist() == rim
+        assert (frame[_at(renderer, (0.2, 0.8))].tolist() == rim) == (angle == 0.0)

@@ -5,21 +5,24 @@ Sides matter to a ball of no radius, which can be on a wall, and to what is cros
 
 import math
 
-from bounce_env.engine.flight import bending, fly, touch_tolerance
+from bounce_env.engine.ends import ends_of, height_over, is_dragged
+from bounce_env.engine.flight import bending, fly, moved, sped, touch_tolerance
 from bounce_env.engine.impact import leaves_end
+from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Feature, Record, Table, function
 from bounce_env.engine.layout import CLOSED, NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE, State, Tables
-from bounce_env.engine.parts import core_at, is_off, turn_of
+from bounce_env.engine.parts import core_at, is_off, side_of_part, turn_of
 from bounce_env.engine.search import wall_normal
 from bounce_env.engine.tolerances import SEARCH_ENDS, ULPS_OF_SPEED
 from bounce_env.engine.touch import on_capsule
 
 
 @function
-def snap(ball: Record, tables: Tables, motions: Table, w: int, scene: int) -> None:
+def snap(state: State, tables: Tables, w: int, k: int) -> None:
     """Put the ball on the surface of what it hits, along the normal: the rounding of the flight ends here."""
+    ball, scene = state.balls[w, k], state.worlds[w].scene
     if ball.next_kind == NEXT_PART:
-        _snap_to_part(ball, tables.parts, motions, tables.turns, ball.part_index, w, scene)
+        _snap_to_part(state, tables, state.motions, tables.parts, w, k, ball.part_index)
     elif ball.hit_kind == ON_FACE:
         _snap_to_face(ball, tables.faces, ball.hit_index, scene)
     elif ball.hit_kind == ON_CIRCLE:
@@ -31,7 +34,7 @@ def snap(ball: Record, tables: Tables, motions: Table, w: int, scene: int) -> No
     elif ball.contact >= 0:
         _snap_to_face(ball, tables.faces, ball.contact, scene)
     elif ball.rides >= 0:
-        _snap_to_part(ball, tables.parts, motions, tables.turns, ball.rides, w, scene)
+        _snap_to_part(state, tables, state.motions, tables.parts, w, k, ball.rides)
 
 
 @function
@@ -90,14 +93,16 @@ def _snap_to_arc(ball: Record, arcs: Table, scene: int) -> None:
 
 
 @function
-def _snap_to_part(ball: Record, parts: Table, motions: Table, turns: Table, m: int, w: int, scene: int) -> None:
+def _snap_to_part(state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, m: int) -> None:
     if parts is None or motions is None:
         return
-    part, motion = parts[scene, m], motions[w, m]
-    x, y, ux, uy = core_at(part, motion, turn_of(turns, scene, m), ball.hi, ball.lo)
-    nx, ny, distance, _ = on_capsule(ball.x - x, ball.y - y, ux, uy, part.back, part.front)
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    part, ends = parts[scene, m], ends_of(state.ends, w, m)
+    x, y, ux, uy, back, front = core_at(part, motions[w, m], turn_of(tables.turns, scene, m), ends, ball.hi, ball.lo)
+    side = side_of_part(state.part_sides, w, k, m)
+    nx, ny, distance, _ = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side)
     # A search may end before a hit: then there is nothing to put the ball on.
-    if distance - part.reach <= SEARCH_ENDS * part.reach:
+    if distance - part.reach <= SEARCH_ENDS * (part.reach + front - back):
         ball.x += (part.reach - distance) * nx
         ball.y += (part.reach - distance) * ny
 
@@ -134,6 +139,9 @@ def arrive(
     nx, ny = wall_normal(state, tables.faces, w, k, left)
     _arrive_at_lines(ball, tables.faces, head.faces, state.face_sides, w, k, scene, x0, y0, vx0, vy0, t)
     _arrive_at_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, x0, y0, vx0, vy0, t)
+    _arrive_at_parts(
+        ball, tables.parts, head.parts, state.motions, state.ends, state.part_sides, w, k, scene, x0, y0, vx0, vy0, t
+    )
     if left >= 0:
         turn = _turn_about_end(ball, tables.faces, left, scene, nx, ny)
         _turn_to_faces(ball, tables.faces, head.faces, state.face_sides, w, k, scene, left, turn)
@@ -174,6 +182,29 @@ def _arrive_at_arcs(
         bend = bending(dx, dy, ball.vx, ball.vy, ball.ax, ball.ay)
         vague = max(slow, math.sqrt(2.0 * abs(bend) * ball.slack))
         sides[w, k, i] = _side_after(height, rate, height0, rate0, t, vague, ball.slack, sides[w, k, i])
+
+
+@function
+def _arrive_at_parts(
+    ball: Record, parts: Table, count: int, motions: Table, all_ends: Table, sides: Table, w: int, k: int, scene: int,
+    x0: float, y0: float, vx0: float, vy0: float, t: float,
+) -> None:  # fmt: skip
+    """A dragged wall is looked at from its last command or stop on, where the flight began before that."""
+    if parts is None or motions is None or all_ends is None or sides is None:
+        return
+    slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
+    for m in range(count):
+        motion, ends = motions[w, m], all_ends[w, m]
+        if not is_dragged(ends, parts[scene, m]):
+            continue
+        until = since(ball.hi, ball.lo, motion.hi, motion.lo)
+        both = max(min(t, until), 0.0)
+        x, y = moved(x0, vx0, ball.ax, t - both), moved(y0, vy0, ball.ay, t - both)
+        vx, vy = sped(vx0, ball.ax, t - both), sped(vy0, ball.ay, t - both)
+        height0, rate0 = height_over(ends, until - both, x, y, vx, vy)
+        height, rate = height_over(ends, until, ball.x, ball.y, ball.vx, ball.vy)
+        slower = slow + ULPS_OF_SPEED * (abs(ends.vx0) + abs(ends.vy0) + abs(ends.vx1) + abs(ends.vy1))
+        sides[w, k, m] = _side_after(height, rate, height0, rate0, both, slower, ball.slack, sides[w, k, m])
 
 
 @function

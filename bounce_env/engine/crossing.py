@@ -3,7 +3,9 @@
 import math
 
 from bounce_env.engine.arrive import end_flight
+from bounce_env.engine.ends import is_dragged, line_at
 from bounce_env.engine.flight import fly, moved, sped
+from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import CROSSING, FIELD_EDGE, LINE, OUT, State, Tables
 from bounce_env.engine.pairs import plan_pairs
@@ -141,6 +143,7 @@ def take_sides(state: State, tables: Tables, w: int, k: int) -> None:
     _side_with_lines(ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene, gx, gy)
     _side_with_lines(ball, tables.edges, head.fields, state.edge_sides, w, k, scene, gx, gy)
     _side_with_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, gx, gy)
+    _side_with_parts(ball, tables.parts, head.parts, state.motions, state.ends, state.part_sides, w, k, scene, gx, gy)
     _side_with_rings(ball, tables.rings, head.rings, state.ring_sides, w, k, scene, gx, gy)
 
 
@@ -157,6 +160,24 @@ def _side_with_lines(
         if abs(lean) <= ball.slack:
             lean = _lean(ball, nx, ny, gx, gy)
         sides[w, k, i] = 1 if lean >= 0.0 else -1
+
+
+@function
+def _side_with_parts(
+    ball: Record, parts: Table, count: int, motions: Table, all_ends: Table, sides: Table, w: int, k: int, scene: int,
+    gx: float, gy: float,
+) -> None:  # fmt: skip
+    if parts is None or motions is None or all_ends is None or sides is None:
+        return
+    for m in range(count):
+        motion, ends = motions[w, m], all_ends[w, m]
+        sides[w, k, m] = 0
+        if is_dragged(ends, parts[scene, m]):
+            x, y, ux, uy, _ = line_at(ends, since(ball.hi, ball.lo, motion.hi, motion.lo))
+            lean = (ball.y - y) * ux - (ball.x - x) * uy
+            if abs(lean) <= ball.slack:
+                lean = _lean(ball, -uy, ux, gx, gy)
+            sides[w, k, m] = 1 if lean >= 0.0 else -1
 
 
 @function

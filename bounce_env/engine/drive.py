@@ -9,12 +9,28 @@ import math
 
 from bounce_env.engine.arrive import arrive, end_flight, face_crossings
 from bounce_env.engine.crossing import accelerate, take_sides
+from bounce_env.engine.ends import (
+    ends_of,
+    is_dragged,
+    move_ends,
+    next_stop_of_ends,
+    set_ends_off,
+    stop_ends,
+)
 from bounce_env.engine.flight import touch_tolerance
 from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import CRUSH, CRUSHED, FLYING, HELD, OK, OUT, PART_STOPS, RESOLVE, State, Tables
 from bounce_env.engine.pairs import plan_pairs
-from bounce_env.engine.parts import core_at, kept_offset, plan_zones, stop_instant, surface_velocity, turn_of
+from bounce_env.engine.parts import (
+    core_at,
+    kept_offset,
+    plan_zones,
+    side_of_part,
+    stop_instant,
+    surface_velocity,
+    turn_of,
+)
 from bounce_env.engine.resolve import log
 from bounce_env.engine.search import plan_parts, pull, resolve_next
 from bounce_env.engine.tolerances import CLEARANCE
@@ -97,6 +113,25 @@ def command(state: State, tables: Tables, motions: Table, parts: Table, w: int, 
 
 
 @function
+def drag(
+    state: State, tables: Tables, motions: Table, parts: Table, all_ends: Table, guides: Table, w: int, m: int,
+    vx0: float, vy0: float, vx1: float, vy1: float,
+) -> None:  # fmt: skip
+    """Let the ends of the dragged wall `m` move at these velocities [m/s] from now on, as far as they may."""
+    if motions is None or parts is None or all_ends is None or guides is None:
+        return
+    motion, ends, world = motions[w, m], all_ends[w, m], state.worlds[w]
+    slow_down(state, tables, tables.drags, w)
+    if vx0 == ends.cx0 and vy0 == ends.cy0 and vx1 == ends.cx1 and vy1 == ends.cy1:
+        return
+    _end_rides(state, tables, w, m)
+    ends.cx0, ends.cy0, ends.cx1, ends.cy1 = vx0, vy0, vx1, vy1
+    set_ends_off(motion, ends, guides[world.scene, m], world.time_hi, world.time_lo)
+    _mind_crushed(state, tables, motions, parts, w, m)
+    replan_part(state, tables, state.zones, w, m)
+
+
+@function
 def command_unwatched(
     world: Record, motions: Table, parts: Table, zones: Table, drags: Table, w: int, m: int, velocity: float
 ) -> bool:
@@ -142,9 +177,12 @@ def replan_part(state: State, tables: Tables, zones: Table, w: int, m: int) -> N
 
 @function
 def _end_rides(state: State, tables: Tables, w: int, m: int) -> None:
-    """End the flights of the balls that part `m` carries: they are resolved anew once it moves otherwise."""
+    """End the flights of the balls that part `m` carries: they are resolved anew once it moves otherwise.
+
+    Of a wall without thickness those of all balls of no radius: their side of it is told by its present motion.
+    """
     for k in range(state.balls.shape[1]):
-        if state.balls[w, k].rides == m:
+        if state.balls[w, k].rides == m or side_of_part(state.part_sides, w, k, m) != 0:
             disturb(state, tables, w, k, 1.0, 0.0, 0.0)
 
 
@@ -157,8 +195,11 @@ def part_stops(
         return
     motion, part = motions[w, m], parts[world.scene, m]
     hi, lo = stop_instant(motion, part)
-    offset = part.span if motion.velocity > 0.0 else 0.0
-    _halt(state, tables, motion, part, world, w, m, offset, hi, lo, ledger)
+    if is_dragged(ends_of(state.ends, w, m), part):
+        _halt_wall(state, tables, state.ends, tables.guides, motion, part, world, w, m, False, hi, lo, ledger)
+    else:
+        offset = part.span if motion.velocity > 0.0 else 0.0
+        _halt(state, tables, motion, part, world, w, m, offset, hi, lo, ledger)
 
 
 @function
@@ -170,21 +211,53 @@ def _halt(
     _end_rides(state, tables, w, m)
     motion.hi, motion.lo, motion.offset = hi, lo, offset
     turn = turn_of(tables.turns, world.scene, m)
-    x, y, ux, uy = core_at(part, motion, turn, hi, lo)
+    x, y, ux, uy, _, front = core_at(part, motion, turn, None, hi, lo)
     # Of a part that turns the ledger tells of its tip, of one that slides of its middle.
-    rx, ry = (part.front * ux, part.front * uy) if turn != 0 else (0.0, 0.0)
-    vx, vy = surface_velocity(motion, turn, ux, uy, rx, ry)
+    rx, ry = (front * ux, front * uy) if turn != 0 else (0.0, 0.0)
+    vx, vy = surface_velocity(motion, part, turn, None, ux, uy, front, rx, ry)
     motion.velocity = -motion.velocity if part.shuttle > 0.0 else 0.0
     if part.shuttle > 0.0:
         motion.command = motion.velocity
+    new_vx, new_vy = surface_velocity(motion, part, turn, None, ux, uy, front, rx, ry)
+    _log_stop(ledger, world, part.element, hi, x + rx, y + ry, vx, vy, new_vx, new_vy)
+    replan_part(state, tables, state.zones, w, m)
+
+
+@function
+def _halt_wall(
+    state: State, tables: Tables, all_ends: Table, guides: Table, motion: Record, part: Record, world: Record, w: int,
+    m: int, blocked: bool, hi: float, lo: float, ledger: Table,
+) -> None:  # fmt: skip
+    """Let the ends of the dragged wall `m` stop at an instant: both if they are `blocked`, or what comes to a stop.
+
+    The ledger has a row for each of its two ends.
+    """
+    if all_ends is None or guides is None:
+        return
+    ends, guide = all_ends[w, m], guides[world.scene, m]
+    _end_rides(state, tables, w, m)
+    vx0, vy0, vx1, vy1 = ends.vx0, ends.vy0, ends.vx1, ends.vy1
+    if blocked:
+        move_ends(motion, ends, guide, hi, lo)
+        stop_ends(motion, ends)
+    else:
+        next_stop_of_ends(motion, ends, guide, hi, lo)
+    _log_stop(ledger, world, part.element, hi, ends.x0, ends.y0, vx0, vy0, ends.vx0, ends.vy0)
+    _log_stop(ledger, world, part.element, hi, ends.x1, ends.y1, vx1, vy1, ends.vx1, ends.vy1)
+    replan_part(state, tables, state.zones, w, m)
+
+
+@function
+def _log_stop(
+    ledger: Table, world: Record, element: int, time: float, x: float, y: float, vx0: float, vy0: float,
+    vx1: float, vy1: float,
+) -> None:  # fmt: skip
     if ledger is not None:
         row = ledger[world.rows]
-        row.time, row.ball, row.element, row.kind = hi, -1, part.element, PART_STOPS
-        row.x, row.y, row.nx, row.ny, row.ux, row.uy = x + rx, y + ry, 0.0, 0.0, 0.0, 0.0
-        row.vx0, row.vy0 = vx, vy
-        row.vx1, row.vy1 = surface_velocity(motion, turn, ux, uy, rx, ry)
+        row.time, row.ball, row.element, row.kind = time, -1, element, PART_STOPS
+        row.x, row.y, row.nx, row.ny, row.ux, row.uy = x, y, 0.0, 0.0, 0.0, 0.0
+        row.vx0, row.vy0, row.vx1, row.vy1 = vx0, vy0, vx1, vy1
         world.rows += 1
-    replan_part(state, tables, state.zones, w, m)
 
 
 @function
@@ -222,9 +295,12 @@ def block(state: State, tables: Tables, motions: Table, parts: Table, w: int, m:
     if motions is None or parts is None:
         return
     world = state.worlds[w]
-    motion, part = motions[w, m], parts[world.scene, m]
-    offset = kept_offset(motion, part, world.time_hi, world.time_lo)
-    _halt(state, tables, motion, part, world, w, m, offset, world.time_hi, world.time_lo, ledger)
+    motion, part, hi, lo = motions[w, m], parts[world.scene, m], world.time_hi, world.time_lo
+    if is_dragged(ends_of(state.ends, w, m), part):
+        _halt_wall(state, tables, state.ends, tables.guides, motion, part, world, w, m, True, hi, lo, ledger)
+    else:
+        offset = kept_offset(motion, part, hi, lo)
+        _halt(state, tables, motion, part, world, w, m, offset, hi, lo, ledger)
 
 
 @function
@@ -234,20 +310,31 @@ def _mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w:
         return
     world = state.worlds[w]
     motion, part, turn = motions[w, m], parts[world.scene, m], turn_of(tables.turns, world.scene, m)
+    ends = ends_of(state.ends, w, m)
     for k in range(state.balls.shape[1]):
         ball = state.balls[w, k]
         if ball.status != CRUSHED:
             continue
-        x, y, ux, uy = core_at(part, motion, turn, world.time_hi, world.time_lo)
-        nx, ny, distance, nearest = on_capsule(ball.x - x, ball.y - y, ux, uy, part.back, part.front)
+        x, y, ux, uy, back, front = core_at(part, motion, turn, ends, world.time_hi, world.time_lo)
+        side = side_of_part(state.part_sides, w, k, m)
+        nx, ny, distance, nearest = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side)
         if distance - part.reach > 2.0 * CLEARANCE * tables.scenes[world.scene].extent:
             continue
-        vx, vy = surface_velocity(motion, turn, ux, uy, nearest * ux, nearest * uy)
+        if side != 0 and not back <= nearest <= front:
+            continue
+        vx, vy = surface_velocity(motion, part, turn, ends, ux, uy, front, nearest * ux, nearest * uy)
         closing = vx * nx + vy * ny
         if closing > 0.0:
-            motion.velocity = 0.0
+            _hold_still(motion, ends, part)
         elif closing < 0.0:
             _free(state, tables, motions, parts, w, k, m)
+
+
+@function
+def _hold_still(motion: Record, ends: Record, part: Record) -> None:
+    motion.velocity = 0.0
+    if ends is not None and is_dragged(ends, part):
+        stop_ends(motion, ends)
 
 
 @function
@@ -259,8 +346,17 @@ def _free(state: State, tables: Tables, motions: Table, parts: Table, w: int, k:
     disturb(state, tables, w, k, 1.0, 0.0, 0.0)
     if crusher != m and crusher >= 0:
         _end_rides(state, tables, w, crusher)
-        set_off(motions[w, crusher], parts[world.scene, crusher], world, motions[w, crusher].command)
+        _resume(state.ends, tables.guides, motions[w, crusher], parts[world.scene, crusher], world, w, crusher)
         replan_part(state, tables, state.zones, w, crusher)
+
+
+@function
+def _resume(all_ends: Table, guides: Table, motion: Record, part: Record, world: Record, w: int, m: int) -> None:
+    """Let a part that was blocked move as it was last commanded to."""
+    if all_ends is not None and guides is not None and is_dragged(all_ends[w, m], part):
+        set_ends_off(motion, all_ends[w, m], guides[world.scene, m], world.time_hi, world.time_lo)
+        return
+    set_off(motion, part, world, motion.command)
 
 
 @function
@@ -274,13 +370,24 @@ def free_all(state: State, tables: Tables, motions: Table, parts: Table, w: int)
 
 
 @function
-def rest_parts(motions: Table, parts: Table, w: int, scene: int, count: int) -> None:
+def rest_parts(motions: Table, parts: Table, all_ends: Table, guides: Table, w: int, scene: int, count: int) -> None:
     """Put the parts where they are after a reset, at rest but for those that shuttle."""
     if motions is None or parts is None:
         return
     for m in range(motions.shape[1]):
+        _rest_ends(all_ends, guides, w, m, scene)
         motion = motions[w, m]
         motion.offset, motion.velocity, motion.command, motion.hi, motion.lo = 0.0, 0.0, 0.0, 0.0, 0.0
         if m < count:
             motion.offset = parts[scene, m].start
             motion.velocity = motion.command = parts[scene, m].shuttle
+
+
+@function
+def _rest_ends(all_ends: Table, guides: Table, w: int, m: int, scene: int) -> None:
+    if all_ends is None or guides is None:
+        return
+    ends, guide = all_ends[w, m], guides[scene, m]
+    ends.x0, ends.y0, ends.x1, ends.y1 = guide.sx, guide.sy, guide.ex, guide.ey
+    ends.vx0, ends.vy0, ends.vx1, ends.vy1 = 0.0, 0.0, 0.0, 0.0
+    ends.cx0, ends.cy0, ends.cx1, ends.cy1 = 0.0, 0.0, 0.0, 0.0

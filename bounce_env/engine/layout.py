@@ -44,14 +44,19 @@ ARC = record(
 SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", drain="i8", element="i8")
 RING = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
 EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
-PART = record(  # what moves as it is told: a capsule that slides along its core, or turns about (x, y)
+PART = record(  # what moves: a capsule that slides along its core or turns about (x, y), or a dragged wall
     x="f8", y="f8", ux="f8", uy="f8",  # [m] where it is at offset 0; unit vector along its core
     back="f8", front="f8",  # [m] where the core begins and ends along that vector
     radius="f8", reach="f8",  # [m] about the core; the same plus the ball's
-    span="f8", start="f8",  # [m or rad] from stop to stop; offset after a reset
+    span="f8", start="f8",  # [m or rad] from stop to stop, 0 of a dragged wall; offset after a reset
     up_speed="f8", down_speed="f8",  # [m/s or rad/s] the fastest either way
     shuttle="f8",  # [m/s] of a part that turns back at its stops: the speed at which it sets off; otherwise 0
     element="i8",
+)  # fmt: skip
+GUIDE = record(  # of a dragged wall
+    sx="f8", sy="f8", ex="f8", ey="f8",  # [m] where its start and its end are after a reset
+    x0="f8", y0="f8", x1="f8", y1="f8",  # [m] the box in which they stay
+    shortest="f8",  # [m] the length at which both stop
 )  # fmt: skip
 
 WORLD = record(
@@ -99,8 +104,14 @@ PAIR = record(hi="f8", lo="f8")  # when two balls hit each other while both keep
 COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
 ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
 MOTION = record(  # of a part, at the instant of its last command or stop
-    offset="f8", velocity="f8", hi="f8", lo="f8",  # [m, m/s] along the rail, or [rad, rad/s] of the stroke
+    # [m, m/s] along the rail, or [rad, rad/s] of the stroke; of a dragged wall that moves the time to its next stop,
+    # [s] below 0, and 1
+    offset="f8", velocity="f8", hi="f8", lo="f8",
     command="f8",  # as asked for; `velocity` is 0 where a stop or a crushed ball holds the part against it
+)  # fmt: skip
+ENDS = record(  # of a dragged wall, at the instant of its last command or stop
+    x0="f8", y0="f8", x1="f8", y1="f8", vx0="f8", vy0="f8", vx1="f8", vy1="f8",  # [m], [m/s]
+    cx0="f8", cy0="f8", cx1="f8", cy1="f8",  # [m/s] as asked for
 )  # fmt: skip
 LEDGER = record(
     time="f8", ball="i8", element="i8", kind="i8", x="f8", y="f8", nx="f8", ny="f8",
@@ -141,6 +152,7 @@ class Tables(NamedTuple):
     edges: Array | None  # of fields
     parts: Array | None
     turns: Array | None  # (scenes, parts) int8: 1 or -1, which way a part turns; 0 slides; None: no scene has any
+    guides: Array | None  # (scenes, parts) GUIDE; None: no scene has a wall that is dragged
     drags: Array | None  # (scenes,) factor on the velocity at each instant of a command; None: no scene has any
 
 
@@ -150,9 +162,11 @@ class State(NamedTuple):
     worlds: Array
     balls: Array  # (worlds, balls)
     motions: Array | None  # (worlds, parts)
+    ends: Array | None  # (worlds, parts) ENDS; None where nothing is dragged
     zones: Array | None  # (worlds, balls, parts)
     face_sides: Array | None  # (worlds, balls, faces) int8; only for a ball of no radius
     arc_sides: Array | None  # (worlds, balls, arcs) int8; only for a ball of no radius
+    part_sides: Array | None  # (worlds, balls, parts) int8; only for a ball of no radius, where walls are dragged
     sensor_sides: Array | None  # (worlds, balls, sensors) int8
     ring_sides: Array | None  # (worlds, balls, rings) int8: 1 outside, -1 inside
     edge_sides: Array | None  # (worlds, balls, edges) int8: 1 on the field's side
@@ -177,9 +191,11 @@ def new_state(tables: Tables, worlds: int, balls: int, point: bool, switches: bo
         worlds=np.zeros(worlds, WORLD),
         balls=np.zeros((worlds, balls), BALL),
         motions=None if tables.parts is None else np.zeros((worlds, tables.parts.shape[1]), MOTION),
+        ends=None if tables.guides is None else np.zeros((worlds, tables.guides.shape[1]), ENDS),
         zones=None if tables.parts is None else np.zeros((worlds, balls, tables.parts.shape[1]), ZONE),
         face_sides=sides(tables.faces) if point else None,
         arc_sides=sides(tables.arcs) if point else None,
+        part_sides=sides(tables.guides) if point else None,
         sensor_sides=sides(tables.sensors),
         ring_sides=sides(tables.rings),
         edge_sides=sides(tables.edges),
@@ -198,9 +214,11 @@ def borrow_state(state: State) -> State:
         borrow(state.worlds),
         borrow(state.balls),
         borrow(state.motions),
+        borrow(state.ends),
         borrow(state.zones),
         borrow(state.face_sides),
         borrow(state.arc_sides),
+        borrow(state.part_sides),
         borrow(state.sensor_sides),
         borrow(state.ring_sides),
         borrow(state.edge_sides),
@@ -228,5 +246,6 @@ def borrow_tables(tables: Tables) -> Tables:
         borrow(tables.edges),
         borrow(tables.parts),
         borrow(tables.turns),
+        borrow(tables.guides),
         borrow(tables.drags),
     )

@@ -35,8 +35,9 @@ DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
 # What comes next.
 NOTHING, OF_BALL, OF_PAIR, OF_PART = -1, 0, 1, 2
 
-# Bounces, the end of a contact and the beginning of another, a small hop and what is in its way, a crush and a stop.
-ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 6
+# Bounces, the end of a contact and the beginning of another, a small hop and what is in its way, a crush and the stop
+# of a wall's two ends.
+ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 7
 
 
 @function
@@ -168,7 +169,7 @@ def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
     x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
     end_flight(ball, tables, scene, gx, gy, t, ball.next_hi, ball.next_lo)
-    snap(ball, tables, state.motions, w, scene)
+    snap(state, tables, w, k)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     vx, vy = ball.vx, ball.vy
     at_once = t == 0.0 and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
@@ -187,7 +188,8 @@ def restart(state: State, tables: Tables, w: int) -> None:
     clear_hits(state, w)
     _cool_down(state.cooling, w)
     _switch_on(state.disabled, w)
-    rest_parts(state.motions, tables.parts, w, world.scene, tables.scenes[world.scene].parts)
+    count = tables.scenes[world.scene].parts
+    rest_parts(state.motions, tables.parts, state.ends, tables.guides, w, world.scene, count)
 
 
 @function

@@ -78,6 +78,8 @@ def _core_at_start(part: Part) -> Core:
         return part.pivot, (x + part.length * c, y + part.length * s)
     if isinstance(part, Bumper):
         return part.center, part.center
+    if isinstance(part, Wall):
+        return part.start, part.end
     ux, uy, span = direction(part.rail_start, part.rail_end)
     x, y = part.rail_start
     x, y = x + 0.5 * span * ux, y + 0.5 * span * uy
@@ -94,6 +96,8 @@ def _from_element(element: Element, core: Core | None, x: float, y: float) -> tu
     """Vector from the nearest point of an element's core to (x, y), its length, and the radius about the core [m]."""
     if isinstance(element, Paddle | Flipper | Bumper) and core is not None:
         return *_from_segment(*core, x, y), element.radius
+    if isinstance(element, Wall) and core is not None:
+        return *_from_segment(*core, x, y), 0.0
     if isinstance(element, Wall) and not element.one_way:
         return *_from_segment(element.start, element.end, x, y), 0.0
     if isinstance(element, Bumper):

@@ -14,6 +14,7 @@ from bounce_env.engine.layout import (
     EDGE,
     ELEMENT,
     FACE,
+    GUIDE,
     MAJOR,
     MINOR,
     PART,
@@ -63,6 +64,7 @@ def pack(scenes: Sequence[Scene]) -> Tables:
         edges=edges,
         parts=parts,
         turns=_turns(scenes),
+        guides=_guides(scenes),
         drags=np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
     )
 
@@ -115,7 +117,8 @@ def _materials(scene: Scene) -> list[Row]:
 
 
 def _walls(scene: Scene) -> Iterable[tuple[int, Wall]]:
-    return ((i, e) for i, e in enumerate(scene.elements) if isinstance(e, Wall))
+    """The walls that stand."""
+    return ((i, e) for i, e in enumerate(scene.elements) if isinstance(e, Wall) and not moves(e))
 
 
 def _faces(scene: Scene) -> list[Row]:
@@ -166,7 +169,7 @@ def _ends(scene: Scene, disabled: Collection[int]) -> list[Row]:
 
 
 def _end_points(element: object) -> tuple[Point, ...]:
-    if isinstance(element, Wall) and not element.one_way:
+    if isinstance(element, Wall) and not (element.one_way or moves(element)):
         return element.start, element.end
     if isinstance(element, Arc) and not element.closed:
         (x, y), r = element.center, element.radius
@@ -227,6 +230,9 @@ def _parts(scene: Scene) -> list[Row]:
 
 def _part(e: Part, ball_radius: float) -> Row:
     """A PART but for the index of its element."""
+    if isinstance(e, Wall):
+        ux, uy, length = direction(e.start, e.end)
+        return (*e.start, ux, uy, 0.0, length, 0.0, ball_radius, 0.0, 0.0, 0.0, 0.0, 0.0)
     thick = (e.radius, e.radius + ball_radius)
     if isinstance(e, Flipper):
         s, c = sin_cos(e.rest_angle)
@@ -253,3 +259,17 @@ def _turns(scenes: Sequence[Scene]) -> Array | None:
     for s, row in enumerate(signs):
         turns[s, : len(row)] = row
     return turns
+
+
+def _guides(scenes: Sequence[Scene]) -> Array | None:
+    """What bounds the way of each dragged wall, by part; None where no scene has any."""
+    if not any(isinstance(e, Wall) for scene in scenes for _, e in scene.parts):
+        return None
+    guides = np.zeros((len(scenes), max(len(scene.parts) for scene in scenes)), GUIDE)
+    for s, scene in enumerate(scenes):
+        side = extent(scene)
+        for m, (_, e) in enumerate(scene.parts):
+            if isinstance(e, Wall):
+                low, high = e.reach or ((-side, -side), (side, side))
+                guides[s, m] = (*e.start, *e.end, *low, *high, e.shortest)
+    return guides

@@ -1,17 +1,19 @@
 """Moving parts: where they are and how fast, when they stop, the zone that each can reach, and what a ball meets there.
 
 A part is a capsule. It slides along its core (a paddle, a bumper on a rail) or turns about one end of it (a flipper),
-at a speed that is constant between commands and stops.
+at a speed that is constant between commands and stops; or it is a wall, both ends of which are dragged (`engine.ends`).
 """
 
 import math
 
 from bounce_env.engine.arc import crossing_time
-from bounce_env.engine.flight import dot, moved, sped, touch_tolerance
-from bounce_env.engine.impact import capsule_time, falling_time
+from bounce_env.engine.ends import ends_of, is_dragged, line_at, stretches, velocity_on
+from bounce_env.engine.flight import dot, moved, sped, swept, touch_tolerance
+from bounce_env.engine.impact import capsule_time, face_time, falling_time
 from bounce_env.engine.instant import before, later, since
 from bounce_env.engine.jit import Feature, Record, Table, function
 from bounce_env.engine.layout import State, Tables
+from bounce_env.engine.stretching import stretching_time
 from bounce_env.engine.trig import sin_cos
 from bounce_env.engine.turning import turning_time
 
@@ -29,7 +31,7 @@ def is_off(disabled: Table, w: int, element: int) -> bool:
 
 @function
 def turn_of(turns: Table, scene: int, m: int) -> int:
-    """Which way part `m` turns, 1 or -1; 0 where it slides."""
+    """Which way part `m` turns, 1 or -1; 0 where it slides or is dragged."""
     if turns is None:
         return 0
     return turns[scene, m]
@@ -48,8 +50,15 @@ def kept_offset(motion: Record, part: Record, hi: float, lo: float) -> float:
 
 
 @function
-def surface_velocity(motion: Record, turn: int, ux: float, uy: float, rx: float, ry: float) -> tuple[float, float]:
-    """Velocity [m/s] of a point of a part, at (rx, ry) [m] from the pivot of one that turns; the core lies along u."""
+def surface_velocity(
+    motion: Record, part: Record, turn: int, ends: Record, ux: float, uy: float, front: float, rx: float, ry: float
+) -> tuple[float, float]:
+    """Velocity [m/s] of a point of a part, at (rx, ry) [m] from where `core_at` says that it is.
+
+    The core lies along u, up to `front` [m].
+    """
+    if ends is not None and is_dragged(ends, part):
+        return velocity_on(ends, min(max((rx * ux + ry * uy) / front, 0.0), 1.0))
     if turn != 0:
         spin = turn * motion.velocity
         return -spin * ry, spin * rx
@@ -57,13 +66,21 @@ def surface_velocity(motion: Record, turn: int, ux: float, uy: float, rx: float,
 
 
 @function
-def core_at(part: Record, motion: Record, turn: int, hi: float, lo: float) -> tuple[float, float, float, float]:
-    """Where a part is at an instant of its present motion: (x, y) [m] and the unit vector along its core."""
+def core_at(
+    part: Record, motion: Record, turn: int, ends: Record, hi: float, lo: float
+) -> tuple[float, float, float, float, float, float]:
+    """Where a part is at an instant of its present motion.
+
+    A point (x, y) [m], the unit vector along its core, and where [m] the core begins and ends along that, from (x, y).
+    """
+    if ends is not None and is_dragged(ends, part):
+        x, y, ux, uy, length = line_at(ends, since(hi, lo, motion.hi, motion.lo))
+        return x, y, ux, uy, 0.0, length
     offset = offset_at(motion, hi, lo)
     if turn != 0:
         s, c = sin_cos(turn * offset)
-        return part.x, part.y, part.ux * c - part.uy * s, part.ux * s + part.uy * c
-    return part.x + offset * part.ux, part.y + offset * part.uy, part.ux, part.uy
+        return part.x, part.y, part.ux * c - part.uy * s, part.ux * s + part.uy * c, part.back, part.front
+    return part.x + offset * part.ux, part.y + offset * part.uy, part.ux, part.uy, part.back, part.front
 
 
 @function
@@ -98,8 +115,8 @@ def plan_zones(
     """Bring the ball's zones up to `now` seconds into its flight, and set when the next of them changes.
 
     The zone of a part is where it can be met: of one that slides the strip along its rail, of one that turns the circle
-    about its pivot. It is a static sensor of the engine's own: passing its border neither re-bases the flight nor shows
-    in the ledger.
+    about its pivot, of a dragged wall everything. It is a static sensor of the engine's own: passing its border neither
+    re-bases the flight nor shows in the ledger.
     """
     ball.zone_after = math.inf
     if parts is None or zones is None:
@@ -119,6 +136,8 @@ def plan_zones(
 
 @function
 def _in_zone(ball: Record, part: Record, turn: int) -> bool:
+    if part.span == 0.0:
+        return True
     x, y = ball.x - part.x, ball.y - part.y
     if turn != 0:
         border = ZONE_MARGIN * (part.front + part.reach)
@@ -129,6 +148,8 @@ def _in_zone(ball: Record, part: Record, turn: int) -> bool:
 @function
 def _zone_change(ball: Record, part: Record, turn: int, gx: Feature, gy: Feature, inside: bool, after: float) -> float:
     """When the ball next passes the border of a part's zone, from the flight's start, no earlier than `after`."""
+    if part.span == 0.0:
+        return math.inf
     x, y = ball.x - part.x, ball.y - part.y
     if turn != 0:
         border, sense = ZONE_MARGIN * (part.front + part.reach), 1.0 if inside else -1.0
@@ -142,10 +163,12 @@ def _zone_change(ball: Record, part: Record, turn: int, gx: Feature, gy: Feature
 
 @function
 def meet_part(
-    ball: Record, motion: Record, part: Record, turn: int, leaves_after: float, extent: float, gx: Feature, gy: Feature
-) -> tuple[float, float]:
+    ball: Record, motion: Record, part: Record, turn: int, ends: Record, side: int, leaves_after: float, extent: float,
+    gx: Feature, gy: Feature,
+) -> tuple[float, float]:  # fmt: skip
     """Instant at which the ball hits a part while both keep their present motion: (hi, lo), inf if not.
 
+    side: on which side of a dragged wall a ball of no radius is while it touches it, otherwise 0.
     leaves_after: duration [s] after which, from the flight's start, the ball is out of the part's reach.
     In the frame of a part that slides the ball flies as ever, and the part is a standing capsule.
     """
@@ -156,20 +179,60 @@ def meet_part(
     t = since(hi, lo, ball.hi, ball.lo)
     stop_hi, stop_lo = stop_instant(motion, part)
     horizon = min(min(ball.end_after, leaves_after) - t, since(stop_hi, stop_lo, hi, lo))
-    x, y, ux, uy = core_at(part, motion, turn, hi, lo)
+    x, y, ux, uy, back, front = core_at(part, motion, turn, ends, hi, lo)
     px, py = moved(ball.x, ball.vx, gx, t) - x, moved(ball.y, ball.vy, gy, t) - y
     vx, vy = sped(ball.vx, gx, t), sped(ball.vy, gy, t)
     slack = touch_tolerance(extent, ball.vx, ball.vy, gx, gy, t)
-    if turn != 0 and motion.velocity != 0.0:
+    if is_dragged(ends, part):
+        after = meet_wall(px, py, vx, vy, gx, gy, ends, ux, uy, front, part.reach, side, slack, horizon)
+    elif turn != 0 and motion.velocity != 0.0:
         rate = turn * motion.velocity
         after = turning_time(px, py, vx, vy, gx, gy, ux, uy, part.front, part.reach, rate, slack, horizon)
     else:
         if turn == 0:
             vx, vy = vx - motion.velocity * ux, vy - motion.velocity * uy
-        after = capsule_time(px, py, vx, vy, gx, gy, ux, uy, part.back, part.front, part.reach, slack, horizon)
+        after = capsule_time(px, py, vx, vy, gx, gy, ux, uy, back, front, part.reach, slack, horizon)
     if after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
+
+
+@function
+def meet_wall(
+    px: float, py: float, vx: float, vy: float, gx: Feature, gy: Feature, ends: Record, ux: float, uy: float,
+    length: float, reach: float, side: int, slack: float, horizon: float,
+) -> float:  # fmt: skip
+    """Hit of a dragged wall that runs `length` [m] along u from the origin now: a duration [s], or inf.
+
+    (px, py) [m] is where the ball is from there, (vx, vy) [m/s] its velocity in the world.
+    """
+    if ends is None:
+        return math.inf
+    vx, vy = vx - ends.vx0, vy - ends.vy0
+    if stretches(ends):
+        ex, ey = ends.vx1 - ends.vx0, ends.vy1 - ends.vy0
+        if not _is_near(px, py, vx, vy, gx, gy, length * ux, length * uy, ex, ey, reach + slack, horizon):
+            return math.inf
+        return stretching_time(px, py, vx, vy, gx, gy, length * ux, length * uy, ex, ey, reach, side, slack, horizon)
+    if reach > 0.0:
+        return capsule_time(px, py, vx, vy, gx, gy, ux, uy, 0.0, length, reach, slack, horizon)
+    return face_time(px, py, vx, vy, gx, gy, ux, uy, length, reach, side, slack, horizon)
+
+
+@function
+def _is_near(
+    px: float, py: float, vx: float, vy: float, gx: Feature, gy: Feature, dx: float, dy: float, ex: float, ey: float,
+    reach: float, horizon: float,
+) -> bool:  # fmt: skip
+    """Whether the boxes that a ball and a wall from the origin along (dx, dy), changing by (ex, ey), sweep meet.
+
+    Most walls are rejected by that alone. Written so that infinite or undefined borders reject nothing.
+    """
+    left, right = swept(px, vx, gx, horizon)
+    below, above = swept(py, vy, gy, horizon)
+    sx, sy = dx + ex * horizon, dy + ey * horizon
+    apart = left > max(dx, sx, 0.0) + reach or right < min(dx, sx, 0.0) - reach
+    return not (apart or below > max(dy, sy, 0.0) + reach or above < min(dy, sy, 0.0) - reach)
 
 
 @function
@@ -185,25 +248,34 @@ def plan_meetings(
     for m in range(head.parts):
         if m == ball.rides or not zones[w, k, m].inside or is_off(state.disabled, w, parts[scene, m].element):
             continue
-        turn = turn_of(tables.turns, scene, m)
-        leaves_after = zones[w, k, m].after
-        hi, lo = meet_part(ball, motions[w, m], parts[scene, m], turn, leaves_after, head.extent, gx, gy)
+        turn, ends = turn_of(tables.turns, scene, m), ends_of(state.ends, w, m)
+        side, leaves_after = side_of_part(state.part_sides, w, k, m), zones[w, k, m].after
+        hi, lo = meet_part(ball, motions[w, m], parts[scene, m], turn, ends, side, leaves_after, head.extent, gx, gy)
         if before(hi, lo, ball.part_hi, ball.part_lo):
             ball.part_hi, ball.part_lo, ball.part_index = hi, lo, m
 
 
 @function
 def way_off_part(
-    ball: Record, motions: Table, parts: Table, turns: Table, w: int, scene: int, gx: Feature, gy: Feature
-) -> float:
+    ball: Record, motions: Table, parts: Table, turns: Table, all_ends: Table, w: int, scene: int, gx: Feature,
+    gy: Feature,
+) -> float:  # fmt: skip
     """Duration after which a ball that slides on a part comes to an end of its straight side; inf if it does not."""
     if motions is None or parts is None:
         return math.inf
     part, motion = parts[scene, ball.rides], motions[w, ball.rides]
-    turn = turn_of(turns, scene, ball.rides)
-    x, y, ux, uy = core_at(part, motion, turn, ball.hi, ball.lo)
-    speed = motion.velocity if turn == 0 else 0.0
-    along = (ball.x - x) * ux + (ball.y - y) * uy
-    rate = (ball.vx - speed * ux) * ux + (ball.vy - speed * uy) * uy
-    pull, back = dot(gx, gy, ux, uy), dot(gx, gy, -ux, -uy)
-    return min(falling_time(along - part.back, False, rate, pull), falling_time(part.front - along, False, -rate, back))
+    turn, ends = turn_of(turns, scene, ball.rides), ends_of(all_ends, w, ball.rides)
+    x, y, ux, uy, back, front = core_at(part, motion, turn, ends, ball.hi, ball.lo)
+    rx, ry = ball.x - x, ball.y - y
+    sx, sy = surface_velocity(motion, part, turn, ends, ux, uy, front, rx, ry)
+    along, rate = rx * ux + ry * uy, (ball.vx - sx) * ux + (ball.vy - sy) * uy
+    pull, against = dot(gx, gy, ux, uy), dot(gx, gy, -ux, -uy)
+    return min(falling_time(along - back, False, rate, pull), falling_time(front - along, False, -rate, against))
+
+
+@function
+def side_of_part(sides: Table, w: int, k: int, m: int) -> int:
+    """On which side, 1 or -1, of dragged wall `m` a touching ball of no radius is; 0 for a disc and other parts."""
+    if sides is None:
+        return 0
+    return sides[w, k, m]

@@ -334,7 +334,7 @@ def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
         ball.hit_kind, ball.hit_index = OFF_END, end
     met = face >= 0 or circle >= 0 or arc >= 0 or end >= 0
     if ball.contact == RIDING:
-        off = way_off_part(ball, state.motions, tables.parts, tables.turns, w, scene, gx, gy)
+        off = way_off_part(ball, state.motions, tables.parts, tables.turns, state.ends, w, scene, gx, gy)
         if off < after:
             after, met = off, True
             ball.hit_kind, ball.hit_index = OFF_PART, ball.rides

@@ -6,27 +6,30 @@ The ball does not move while its bounces at one instant are resolved, so the lis
 import math
 
 from bounce_env.engine.arc import in_span
+from bounce_env.engine.ends import ends_of, is_dragged, stretches
 from bounce_env.engine.impact import beside
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import State, Tables
-from bounce_env.engine.parts import core_at, is_off, surface_velocity, turn_of
+from bounce_env.engine.parts import core_at, is_off, side_of_part, surface_velocity, turn_of
 from bounce_env.engine.search import is_gate, side_on
 from bounce_env.engine.tolerances import ROLLING
 
 
 @function
 def on_capsule(
-    x: float, y: float, ux: float, uy: float, back: float, front: float
+    x: float, y: float, ux: float, uy: float, back: float, front: float, side: int
 ) -> tuple[float, float, float, float]:
     """From the nearest point of a capsule's core to (x, y): unit normal (nx, ny), distance [m], and where it is.
 
     The core runs from `back` to `front` [m] along the unit (ux, uy) through the origin; where is along that.
+    side: on which side of a core without thickness a ball of no radius is, and the normal points, wherever along its
+    line that is; otherwise 0.
     """
     along = x * ux + y * uy
-    if back <= along <= front:
+    if side != 0 or back <= along <= front:
         height = y * ux - x * uy
-        facing = 1.0 if height >= 0.0 else -1.0
-        return -facing * uy, facing * ux, abs(height), along
+        facing = 1.0 if (height >= 0.0 if side == 0 else side > 0) else -1.0
+        return -facing * uy, facing * ux, facing * height, along
     nearest = front if along > front else back
     dx, dy = x - nearest * ux, y - nearest * uy
     distance = math.sqrt(dx * dx + dy * dy)
@@ -49,6 +52,8 @@ def collect_touches(state: State, tables: Tables, w: int, k: int) -> None:
         tables.parts,
         state.motions,
         tables.turns,
+        state.ends,
+        state.part_sides,
         state.zones,
         head.parts,
         state.touches,
@@ -153,6 +158,8 @@ def _touch_parts(
     parts: Table,
     motions: Table,
     turns: Table,
+    all_ends: Table,
+    sides: Table,
     zones: Table,
     count: int,
     touches: Table,
@@ -167,23 +174,27 @@ def _touch_parts(
     for m in range(count):
         if not zones[w, k, m].inside:
             continue
-        part, motion, turn = parts[scene, m], motions[w, m], turn_of(turns, scene, m)
-        x, y, ux, uy = core_at(part, motion, turn, ball.hi, ball.lo)
+        part, motion, turn, ends = parts[scene, m], motions[w, m], turn_of(turns, scene, m), ends_of(all_ends, w, m)
+        x, y, ux, uy, back, front = core_at(part, motion, turn, ends, ball.hi, ball.lo)
         dx, dy = ball.x - x, ball.y - y
-        nx, ny, distance, nearest = on_capsule(dx, dy, ux, uy, part.back, part.front)
-        if distance > part.reach + ball.slack or is_off(disabled, w, part.element):
+        side = side_of_part(sides, w, k, m)
+        nx, ny, distance, nearest = on_capsule(dx, dy, ux, uy, back, front, side)
+        if abs(distance) > part.reach + ball.slack or is_off(disabled, w, part.element):
             continue
-        spin = turn * motion.velocity
-        reach = part.front + part.reach if turn != 0 else part.reach
+        if side != 0 and not back - ball.slack <= nearest <= front + ball.slack:
+            continue
+        spin = _spin(motion, part, turn, ends, ux, uy, front)
+        moves = spin != 0.0 or _stretches(ends, part)
+        reach = front + part.reach if moves or turn != 0 else part.reach
         rx, ry = nearest * ux + part.radius * nx, nearest * uy + part.radius * ny
-        vx, vy = surface_velocity(motion, turn, ux, uy, rx, ry)
+        vx, vy = surface_velocity(motion, part, turn, ends, ux, uy, front, rx, ry)
         pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
         least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * reach) * reach))
         # Where the straight side passes into the round end both are touched.
         for straight in (True, False):
-            if straight and not part.back < nearest < part.front:
+            if straight and side == 0 and not back < nearest < front:
                 continue
-            if not straight and part.back + ball.slack < nearest < part.front - ball.slack:
+            if not straight and (side != 0 or back + ball.slack < nearest < front - ball.slack):
                 continue
             listed = ball.touched
             _add(ball, touches, w, nx, ny, 0.0 if straight else 1.0 / part.reach, part.element, -1)
@@ -191,6 +202,22 @@ def _touch_parts(
                 return
             touch = touches[w, listed]
             touch.part, touch.ux, touch.uy, touch.least = m, vx, vy, least
-            touch.moves = 1 if spin != 0.0 else 0
-            touch.length = part.front - part.back
-            touch.along = nearest - part.back if ux * ny > uy * nx else part.front - nearest
+            touch.moves = 1 if moves else 0
+            touch.length = front - back
+            touch.along = nearest - back if ux * ny > uy * nx else front - nearest
+
+
+@function
+def _spin(motion: Record, part: Record, turn: int, ends: Record, ux: float, uy: float, front: float) -> float:
+    """How fast [rad/s] a part turns now."""
+    if ends is not None and is_dragged(ends, part):
+        return ((ends.vy1 - ends.vy0) * ux - (ends.vx1 - ends.vx0) * uy) / front
+    return turn * motion.velocity
+
+
+@function
+def _stretches(ends: Record, part: Record) -> bool:
+    """Whether a part is a wall whose ends do not move alike."""
+    if ends is None:
+        return False
+    return is_dragged(ends, part) and stretches(ends)

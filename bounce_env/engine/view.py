@@ -2,6 +2,7 @@
 
 import math
 
+from bounce_env.engine.ends import ends_of
 from bounce_env.engine.flight import moved, sped
 from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Record, Table, function, kernel
@@ -28,14 +29,14 @@ def ball_now(state: State, tables: Tables, w: int, k: int) -> tuple[float, float
 
 @function
 def core_now(
-    motions: Table, parts: Table, turns: Table, w: int, world: Record, m: int
+    motions: Table, parts: Table, turns: Table, ends: Table, w: int, world: Record, m: int
 ) -> tuple[float, float, float, float]:
     """Where the two ends of part `m`'s core are now: x, y, x, y [m]; NaN where there are no parts."""
     if motions is None or parts is None:
         return math.nan, math.nan, math.nan, math.nan
-    part = parts[world.scene, m]
-    x, y, ux, uy = core_at(part, motions[w, m], turn_of(turns, world.scene, m), world.time_hi, world.time_lo)
-    return x + part.back * ux, y + part.back * uy, x + part.front * ux, y + part.front * uy
+    part, turn = parts[world.scene, m], turn_of(turns, world.scene, m)
+    x, y, ux, uy, back, front = core_at(part, motions[w, m], turn, ends_of(ends, w, m), world.time_hi, world.time_lo)
+    return x + back * ux, y + back * uy, x + front * ux, y + front * uy
 
 
 @kernel
@@ -45,5 +46,5 @@ def view(state: State, tables: Tables, w: int, balls: Array, cores: Array) -> No
         balls[k, 0], balls[k, 1], balls[k, 2], balls[k, 3] = ball_now(state, tables, w, k)
     for m in range(cores.shape[0]):
         cores[m, 0], cores[m, 1], cores[m, 2], cores[m, 3] = core_now(
-            state.motions, tables.parts, tables.turns, w, state.worlds[w], m
+            state.motions, tables.parts, tables.turns, state.ends, w, state.worlds[w], m
         )

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.drive import command, disturb, free_all, place, set_off
+from bounce_env.engine.drive import command, disturb, drag, free_all, place, set_off
+from bounce_env.engine.ends import set_ends_off
 from bounce_env.engine.instant import later
 from bounce_env.engine.jit import from_python, kernel
 from bounce_env.engine.layout import LEDGER, OUT, State, Tables, borrow_state, borrow_tables, new_state
@@ -16,7 +17,7 @@ from bounce_env.engine.pack import pack, switch_ends
 from bounce_env.engine.parts import offset_at
 from bounce_env.engine.snapshot import from_bytes, to_bytes
 from bounce_env.engine.view import view
-from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor
+from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor, Wall
 
 Floats = npt.NDArray[np.float64]
 
@@ -80,6 +81,22 @@ def _command(state: State, tables: Tables, part: int, velocity: float) -> None:
 
 
 @kernel
+def _drag(state: State, tables: Tables, part: int, velocities: Floats) -> None:
+    state, tables = borrow_state(state), borrow_tables(tables)
+    drag(
+        state, tables, state.motions, tables.parts, state.ends, tables.guides, 0, part,
+        velocities[0, 0], velocities[0, 1], velocities[1, 0], velocities[1, 1],
+    )  # fmt: skip
+
+
+@kernel
+def _set_ends_off(motions: Any, ends: Any, guides: Any, world: Any, part: int) -> None:
+    """As `_set_off`, for a dragged wall."""
+    guide = guides[world[0].scene, part]
+    set_ends_off(motions[0, part], ends[0, part], guide, world[0].time_hi, world[0].time_lo)
+
+
+@kernel
 def _set_off(motions: Any, parts: Any, world: Any, part: int, velocity: float) -> None:
     """Let a part move before any flight has been planned: no ball has to mind it yet."""
     set_off(motions[0, part], parts[world[0].scene, part], world[0], velocity)
@@ -110,8 +127,8 @@ class World:
         """Time 0, parts where they start, the balls at `position` [m] with `velocity` [m/s].
 
         Both are of shape (balls, 2), or (x, y) for one ball. A paddle starts in the middle of its rail, a flipper at
-        its `rest_angle`, a moving bumper at its `center`. A ball that overlaps an element by no more than round-off is
-        moved to its surface. Raises ValueError for another shape, for NaN or infinity, and where a ball overlaps an
+        its `rest_angle`, a moving bumper at its `center`, a draggable wall where it is in the scene. A ball that
+        overlaps an element by no more than round-off is moved to its surface. Raises ValueError for another shape, for NaN or infinity, and where a ball overlaps an
         element (which it names) or another ball; the world is then as before.
         """
         at, speed = self._rows("position", position), self._rows("velocity", velocity)
@@ -151,11 +168,13 @@ class World:
             pages.append(page[: world.rows].copy())
         return np.concatenate(pages)
 
-    def command(self, name: str, value: float | bool) -> None:
+    def command(self, name: str, value: float | bool | npt.ArrayLike) -> None:
         """Let the part `name` move otherwise from now until the next command.
 
         A paddle moves along its rail at `value` m/s. A flipper turns to its `active_angle` while `value` is True, and
         back while it is False. A moving bumper goes on at `value` m/s, and turns back at the ends of its rail as ever.
+        The ends of a draggable wall move at `value` = ((vx, vy), (vx, vy)) m/s, the start's and the end's, as far as
+        its `reach` and `min_length` let them.
 
         Raises ValueError for a name that no part has, and for a value that it cannot take.
         """
@@ -164,6 +183,9 @@ class World:
         if name not in names:
             raise ValueError(f"command: {name!r} must be one of the scene's parts: {sorted(names)}")
         part = self._parts[names[name]][1]
+        if isinstance(part, Wall):
+            _drag(self._state, self._tables, names[name], _velocities(name, value, self.scene.max_speed))
+            return
         if isinstance(part, Flipper):
             if not isinstance(value, bool | np.bool_):
                 raise ValueError(f"command {name!r} = {value!r}: must be True (pressed) or False (released)")
@@ -213,7 +235,8 @@ class World:
         """Go on in another scene: time, balls and their velocities stay; a part of the same name and kind keeps its
         place and command.
 
-        The place is the distance or angle from its first stop, as far as the new way reaches. All elements are on.
+        The place is the distance or angle from its first stop, as far as the new way reaches; a draggable wall keeps
+        its ends where its `start`, `end` and `reach` are as before. All elements are on.
         Raises ValueError where the balls have another size or one overlaps an element of the new scene; the world is
         then as before.
         """
@@ -236,7 +259,10 @@ class World:
         out = self._state.balls["status"][0] == OUT
         state.balls[0, out] = self._state.balls[0, out]
         for m, velocity in commands.items():
-            _set_off(state.motions, tables.parts, state.worlds, m, velocity)
+            if isinstance(scene.parts[m][1], Wall):
+                _set_ends_off(state.motions, state.ends, tables.guides, state.worlds, m)
+            else:
+                _set_off(state.motions, tables.parts, state.worlds, m, velocity)
         self.scene, self._tables, self._state, self._parts = scene, tables, state, scene.parts
 
     def _move_parts(self, scene: Scene, state: State, tables: Tables) -> dict[int, float]:
@@ -250,6 +276,12 @@ class World:
             motion.offset, motion.velocity, motion.command = row.start, row.shuttle, row.shuttle
             motion.hi, motion.lo = state.worlds[0].time_hi, state.worlds[0].time_lo
             before = known.get(part.name)
+            if isinstance(part, Wall):
+                assert state.ends is not None
+                assert tables.guides is not None
+                self._move_wall(part, before, state.ends[0, m], tables.guides[0, m])
+                commands[m] = 0.0
+                continue
             if before is None or type(self._parts[before][1]) is not type(part):
                 continue
             assert self._state.motions is not None
@@ -258,6 +290,16 @@ class World:
             motion.offset, motion.velocity = min(max(offset, 0.0), float(row.span)), 0.0
             commands[m] = min(max(float(was.command), -float(row.down_speed)), float(row.up_speed))
         return commands
+
+    def _move_wall(self, wall: Wall, before: int | None, ends: Any, guide: Any) -> None:
+        """Put the ends of a new scene's wall, at rest, where those of the same one are, with their commands."""
+        ends.x0, ends.y0, ends.x1, ends.y1 = guide.sx, guide.sy, guide.ex, guide.ey
+        was = None if before is None else self._parts[before][1]
+        if isinstance(was, Wall) and (was.start, was.end, was.reach) == (wall.start, wall.end, wall.reach):
+            assert self._state.ends is not None
+            ends.x0, ends.y0, ends.x1, ends.y1 = self._now()[1][before]
+            for name in ("cx0", "cy0", "cx1", "cy1"):
+                ends[name] = self._state.ends[0, before][name]
 
     def snapshot(self) -> bytes:
         """The full state as bytes; `restore` goes on from it, bit for bit."""
@@ -292,7 +334,8 @@ class World:
     @property
     def cores(self) -> Floats:
         """Where the moving parts are now, in the order of the scene, shape (parts, 4): x, y of one end of the part's
-        core and of the other, metres. A flipper's first end is its pivot; a bumper's two ends are its centre.
+        core and of the other, metres. A flipper's first end is its pivot; a bumper's two ends are its centre; those of
+        a draggable wall are its start and its end.
         """
         return self._now()[1]
 
@@ -339,7 +382,21 @@ def _cores_by_index(scene: Scene, cores: Floats) -> dict[int, Core]:
     return {index: ((x0, y0), (x1, y1)) for (index, _), (x0, y0, x1, y1) in rows}
 
 
-def _speed(name: str, value: float | bool, fastest: float) -> float:
-    if isinstance(value, bool | np.bool_) or not (math.isfinite(value) and abs(value) <= fastest):
+def _velocities(name: str, value: object, max_speed: float | None) -> Floats:
+    """The velocities of a draggable wall's two ends, (2, 2)."""
+    try:
+        rows = np.array(value, np.float64)
+    except (TypeError, ValueError):
+        rows = np.empty(0)
+    limit = math.inf if max_speed is None else max_speed
+    if rows.shape != (2, 2) or not np.isfinite(rows).all() or not (np.hypot(*rows.T) < limit).all():
+        words = "" if max_speed is None else f", each slower than the scene's max_speed, {max_speed!r} m/s"
+        raise ValueError(f"command {name!r} = {value!r}: must be ((vx, vy), (vx, vy)), finite{words}")
+    return rows
+
+
+def _speed(name: str, value: Any, fastest: float) -> float:
+    is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    if not (is_number and math.isfinite(value) and abs(value) <= fastest):
         raise ValueError(f"command {name!r} = {value!r}: must be finite and at most {fastest!r} m/s either way")
     return float(value)

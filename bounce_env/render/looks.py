@@ -76,7 +76,8 @@ def part_look(part: Part, way: Point, scene: Scene, projection: Projection, *, l
     start = (0.0, 0.0)
     if isinstance(part, Bumper):
         return _bumper(start, part.radius, _adds_energy(part, scene), projection, lit=lit)
-    radius = max(part.radius * projection.scale, _SMALLEST_RADIUS)
+    thickness = _pen(projection) if isinstance(part, Wall) else part.radius * projection.scale
+    radius = max(thickness, _SMALLEST_RADIUS)
     if not lit:
         return (Stroke(start, way, radius, _PADDLE),)
     return (*_glow(start, way, radius, 0.8 * radius, _PADDLE, 110), Stroke(start, way, radius, _PADDLE_LIT))

@@ -105,6 +105,8 @@ def _size_problems(element: Element, ball_radius: float, limits: _Limits) -> Ite
     match element:
         case Wall():
             yield from _short(element, "start", "end", limits)
+            if element.min_length is not None and element.min_length < limits.length:
+                yield "min_length", f"at least {limits.length:.3g} m"
         case Bumper():
             yield from _thin(element.radius, limits)
             yield from _short(element, "center", "rail_end", limits)

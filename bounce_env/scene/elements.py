@@ -10,6 +10,7 @@ along the surface is multiplied by ball.f * element.f. A kick is then added alon
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import KW_ONLY
 from typing import Self, TypeAlias
 
@@ -21,9 +22,11 @@ from bounce_env.scene.base import CONFIG, Box, Spec, away_from, box_of, union
 from bounce_env.scene.fields import (
     SMALLEST,
     Angle,
+    BoxOrNone,
     Flag,
     Name,
     Positive,
+    PositiveOrNone,
     Vector,
     VectorOrNone,
     ZeroOrMore,
@@ -74,19 +77,60 @@ class Wall(_Surface):
     kick_threshold (m/s). cooldown: seconds after a kick in which the wall gives no other. one_way: True
     bounces a ball that comes from the left of start -> end only; from the right it passes freely, and the ends
     never bounce. name: unique in the scene, or "" for none.
+
+    draggable: True lets commands move the two ends, each at its own velocity; not with one_way. min_length: metres, > 0
+    and no more than it is long at first; where the ends come so near to each other both stop; None for a tenth of the
+    first length. reach: two corners of the box in which the ends stay, each coordinate stopping by itself at the box's
+    border; None for the square about the origin that holds the scene (`engine.pack.extent`). The last two of a
+    draggable wall only.
     """
 
     start: Vector
     end: Vector
     _: KW_ONLY
     one_way: Flag = False
+    draggable: Flag = False
+    min_length: PositiveOrNone = None
+    reach: BoxOrNone = None
 
     _check_end = field_validator("end")(away_from("start"))
 
+    @model_validator(mode="after")
+    def _check_drag(self) -> Self:
+        problems = list(self._drag_problems())
+        if problems:
+            details = [
+                InitErrorDetails(type=not_allowed(words), loc=(field,), input=getattr(self, field))
+                for field, words in problems
+            ]
+            raise ValidationError.from_exception_data("Wall", details)
+        return self
+
+    def _drag_problems(self) -> Iterator[tuple[str, str]]:
+        if not self.draggable:
+            for field in ("min_length", "reach"):
+                if getattr(self, field) is not None:
+                    yield field, "left out, or None, where draggable is false"
+            return
+        if self.one_way:
+            yield "one_way", "false where draggable is true"
+        length = math.dist(self.start, self.end)
+        if self.min_length is not None and self.min_length > length:
+            yield "min_length", f"at most {length:.6g}, the length at first"
+        if self.reach is not None:
+            (x0, y0), (x1, y1) = self.reach
+            if not all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (self.start, self.end)):
+                yield "reach", f"a box that holds start = {list(self.start)} and end = {list(self.end)}"
+
+    @property
+    def shortest(self) -> float:
+        """The length at which the ends of a draggable wall stop, metres."""
+        return 0.1 * math.dist(self.start, self.end) if self.min_length is None else self.min_length
+
     @property
     def bounds(self) -> Box:
-        """x_min, y_min, x_max, y_max in metres."""
-        return box_of((self.start, self.end))
+        """x_min, y_min, x_max, y_max in metres; of a draggable wall with a `reach` all of it."""
+        return box_of((self.start, self.end) if self.reach is None else self.reach)
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -251,9 +295,16 @@ class Flipper(_Surface):
 
 
 Element: TypeAlias = Wall | Bumper | Arc | Paddle | Flipper | Sensor | Field
-Part: TypeAlias = Paddle | Flipper | Bumper
+Part: TypeAlias = Paddle | Flipper | Bumper | Wall
 
 
 def moves(element: Element) -> bool:
     """Whether an element moves: as it is commanded, or a bumper by itself."""
-    return isinstance(element, Paddle | Flipper) or (isinstance(element, Bumper) and element.rail_end is not None)
+    match element:
+        case Paddle() | Flipper():
+            return True
+        case Bumper():
+            return element.rail_end is not None
+        case Wall():
+            return element.draggable
+    return False

@@ -137,6 +137,17 @@ def _points(value: object) -> tuple[tuple[float, float], ...]:
     return points
 
 
+def _box_or_none(value: object) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    if value is None:
+        return None
+    if not isinstance(value, tuple | list | np.ndarray):
+        raise TypeError
+    (x0, y0), (x1, y1) = map(_vector, value)
+    if not (x0 < x1 and y0 < y1):
+        raise ValueError
+    return (x0, y0), (x1, y1)
+
+
 def _flag(value: object) -> bool:
     if not isinstance(value, bool):
         raise TypeError
@@ -168,6 +179,10 @@ VectorOrNone = Annotated[tuple[float, float] | None, Allowed(POINT_WORDS, _vecto
 Points = Annotated[
     tuple[tuple[float, float], ...],
     Allowed(f"at least 3 points [x, y], each number from {-LARGEST:g} to {LARGEST:g}", _points),
+]
+BoxOrNone = Annotated[
+    tuple[tuple[float, float], tuple[float, float]] | None,
+    Allowed("two corners [x, y] of a box, the lower left and the upper right one", _box_or_none),
 ]
 ZeroOrMore = Annotated[float, Allowed(f"a number >= 0 (at most {LARGEST:g})", _zero_or_more)]
 ZeroToOne = Annotated[float, Allowed("a number >= 0 and <= 1", _zero_to_one)]

@@ -12,8 +12,8 @@ from bounce_env.engine.world import World
 MAX_SPEED = 250.0  # m/s, more than any part's surface
 
 
-def moving_scene(rng: np.random.Generator) -> Scene:
-    """A unit box with up to three flippers, two paddles and a bumper on a rail, and some things that stand."""
+def moving_scene(rng: np.random.Generator, *, point: bool = False) -> Scene:
+    """A unit box with up to three flippers, two paddles, two dragged walls and a bumper on a rail; some things stand."""
     pull = 0.0 if rng.random() < 0.2 else 10.0 ** rng.uniform(-1.0, 2.0)
     angle = rng.choice([0.0, 0.0, 0.5, rng.uniform(0.0, 2.0)]) * math.pi
     corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
@@ -22,11 +22,13 @@ def moving_scene(rng: np.random.Generator) -> Scene:
         *(_flipper(rng, f"flipper {i}") for i in range(rng.integers(0, 4))),
         *(_paddle(rng, f"paddle {i}") for i in range(rng.integers(0, 3))),
         *(_shuttle(rng, f"shuttle {i}") for i in range(rng.integers(0, 2))),
+        *(_dragged(rng, f"dragged {i}") for i in range(rng.integers(0, 3))),
     ]
     standing = [_standing(rng) for _ in range(rng.integers(0, 4))]
+    radius = 0.0 if point else float(10.0 ** rng.uniform(-2.5, -1.3))
     return Scene(
         gravity=(pull * math.sin(angle), -pull * math.cos(angle)),
-        ball=Ball(radius=float(10.0 ** rng.uniform(-2.5, -1.3)), b=float(rng.choice([1.0, 0.9, 0.5]))),
+        ball=Ball(radius=radius, b=float(rng.choice([1.0, 0.9, 0.5]))),
         rest_speed=0.0 if rng.random() < 0.5 else float(10.0 ** rng.uniform(-3.0, -0.5)),
         max_speed=MAX_SPEED,
         elements=(*walls, *parts, *standing),
@@ -59,9 +61,24 @@ def command_at_random(rng: np.random.Generator, world: World) -> None:
     _, part = parts[rng.integers(len(parts))]
     if isinstance(part, Flipper):
         world.command(part.name, bool(rng.random() < 0.5))
+    elif isinstance(part, Wall):
+        world.command(part.name, _end_speeds(rng))
     else:
         fastest = part.max_speed if isinstance(part, Paddle) else part.speed
         world.command(part.name, float(rng.choice([-1.0, 0.0, 1.0, rng.uniform(-1.0, 1.0)])) * fastest)
+
+
+def _end_speeds(rng: np.random.Generator) -> np.ndarray:
+    """Velocities of a wall's two ends: both at rest, alike, one of them, or each its own."""
+    speeds = 10.0 ** rng.uniform(-2.0, 2.0) * rng.uniform(-1.0, 1.0, (2, 2))
+    match rng.integers(5):
+        case 0:
+            return np.zeros((2, 2))
+        case 1:
+            return np.stack([speeds[0], speeds[0]])
+        case 2:
+            return speeds * [[1.0], [0.0]]
+    return speeds
 
 
 def _directions(rng: np.random.Generator, count: int) -> np.ndarray:
@@ -96,6 +113,13 @@ def _paddle(rng: np.random.Generator, name: str) -> Paddle:
     start, end = _place(rng), _place(rng)
     shape = {"half_width": float(rng.choice([0.0, rng.uniform(0.01, 0.1)])), "radius": float(rng.uniform(0.005, 0.03))}
     return Paddle(start, end, max_speed=float(10.0 ** rng.uniform(-1.0, 2.0)), name=name, **shape, **_material(rng))
+
+
+def _dragged(rng: np.random.Generator, name: str) -> Wall:
+    start, end = _place(rng), _place(rng)
+    shortest = None if rng.random() < 0.5 else float(rng.uniform(0.01, 1.0)) * math.dist(start, end)
+    box = ((0.1, 0.1), (0.9, 0.9)) if rng.random() < 0.7 else None
+    return Wall(start, end, draggable=True, min_length=shortest, reach=box, name=name, **_material(rng))
 
 
 def _shuttle(rng: np.random.Generator, name: str) -> Bumper:

@@ -1,6 +1,7 @@
 """Whatever moves in a closed scene, however it is commanded: no ball escapes, sinks in, or stops without a reason."""
 
 from collections import Counter
+from dataclasses import replace
 from unittest import mock
 
 import numpy as np
@@ -23,14 +24,16 @@ ALL = Scene(
         Bumper((1, 1), 0.1),
         Flipper((0, 2), 1.0, radius=0.1, rest_angle=0.0, active_angle=1.0, up_speed=1.0, down_speed=1.0),
         Paddle((0, 0), (1, 0), half_width=0.1, radius=0.1, max_speed=1.0),
+        Wall((0, 0), (1, 0), draggable=True),
     ),
 )
 
 
 def new_world(scene: Scene, balls: int) -> World:
-    """A world of the scene in the kernel that has all features of moving scenes: one kernel for all of them."""
+    """A world of the scene in the kernel that has all features of moving scenes: one kernel for all of a size."""
     pack = engine.pack
-    with mock.patch.object(engine, "pack", lambda scenes: pack([*scenes, ALL])):
+    general = replace(ALL, ball=scene.ball)
+    with mock.patch.object(engine, "pack", lambda scenes: pack([*scenes, general])):
         return World(scene, balls)
 
 

@@ -8,10 +8,11 @@ import math
 import numpy as np
 from conftest import soak_count
 
-from bounce_env.engine import impact, turning
+from bounce_env.engine import impact, stretching, turning
 from bounce_env.engine.jit import from_python
 
 turning_time, capsule_time = from_python(turning.turning_time), from_python(impact.capsule_time)
+stretching_time = from_python(stretching.stretching_time)
 
 SAMPLES = 4001
 REACH = 4.0  # m: the ball starts no further away
@@ -99,6 +100,45 @@ def test_sliding_capsules() -> None:
         x, y, vx, vy, gx, gy = ball
         vx, vy = vx - drift[0], vy - drift[1]
         found = capsule_time(x, y, vx, vy, gx, gy, ux, uy, back, front, reach, 2.0**-48 * size, horizon)
+        check(found, horizon, at, size, seed)
+        hits += found < math.inf
+    assert 0.1 * count < hits < 0.9 * count
+
+
+def wall_gap(t, ball, ends, speeds, reach):
+    """Distance of a ball from a wall, whose two ends start at `ends` and move at `speeds`, at times `t`."""
+    x, y, vx, vy, gx, gy = map(np.longdouble, ball)
+    (ax, ay), (bx, by) = ((p + np.longdouble(v) * t for p, v in zip(*end, strict=True)) for end in zip(ends, speeds, strict=True))
+    dx, dy = bx - ax, by - ay
+    px, py = x + vx * t + gx * t * t / 2 - ax, y + vy * t + gy * t * t / 2 - ay
+    share = np.clip((px * dx + py * dy) / (dx * dx + dy * dy), np.longdouble(0), np.longdouble(1))
+    return np.hypot(px - share * dx, py - share * dy) - np.longdouble(reach)
+
+
+def test_stretching_walls() -> None:
+    """Soak: 10^5 walls whose ends are dragged at up to 100 m/s, and turn at up to 200 rad/s."""
+    hits = 0
+    count = soak_count(1500, 100_000)
+    for seed in range(count):
+        rng = np.random.default_rng(seed)
+        ball, angle, length, reach = sweep(rng)
+        ends = np.array([(0.0, 0.0), (length * math.cos(angle), length * math.sin(angle))])
+        fastest = min(100.0, 200.0 * length) * 10.0 ** rng.uniform(-3.0, 0.0)
+        speeds = rng.uniform(-1.0, 1.0, (2, 2)) * fastest
+        (ex, ey), (dx, dy) = speeds[1] - speeds[0], ends[1]
+        horizon = float(rng.uniform(0.1, 3.0) * length / fastest)
+        # As by the stop of a wall that may get no shorter: it keeps a twentieth of its length.
+        nearest = min(max(-(dx * ex + dy * ey) / (ex * ex + ey * ey), 0.0), horizon)
+        if math.hypot(dx + ex * nearest, dy + ey * nearest) < 0.05 * length:
+            horizon = 0.9 * nearest
+        at = lambda t: wall_gap(t, ball, ends, speeds, reach)  # noqa: B023, E731
+        if at(np.longdouble(0)) < 1e-6 * length:
+            continue
+        size = 3.0 * (length + reach) + (math.hypot(*ball[2:4]) + 4.0 * fastest) * horizon
+        size += math.hypot(*ball[4:]) * horizon**2
+        x, y, vx, vy, gx, gy = ball
+        vx, vy = vx - speeds[0, 0], vy - speeds[0, 1]
+        found = stretching_time(x, y, vx, vy, gx, gy, dx, dy, ex, ey, reach, 0, 2.0**-48 * size, horizon)
         check(found, horizon, at, size, seed)
         hits += found < math.inf
     assert 0.1 * count < hits < 0.9 * count

@@ -100,7 +100,10 @@ TOUCH = record(
     moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
     element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
 )  # fmt: skip
-PAIR = record(hi="f8", lo="f8")  # when two balls hit each other while both keep to their flights
+PAIR = record(
+    hi="f8", lo="f8",  # when two balls hit each other while both keep to their flights
+    last_hi="f8", last_lo="f8", times="i8",  # when they last did, and how often at that instant
+)  # fmt: skip
 COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
 ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
 MOTION = record(  # of a part, at the instant of its last command or stop

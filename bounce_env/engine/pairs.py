@@ -13,9 +13,9 @@ from bounce_env.engine.instant import before, later, since
 from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
 from bounce_env.engine.law import capped
 from bounce_env.engine.layout import BOUNCE, CRUSHED, OUT, State, Tables
-from bounce_env.engine.resolve import log
+from bounce_env.engine.resolve import log, take_opposed
 from bounce_env.engine.search import pull, resolve_next
-from bounce_env.engine.tolerances import ROLLING, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ROLLING, ULPS_OF_SPEED
 
 
 def _no_difference(ax: Feature, ay: Feature, bx: Feature, by: Feature) -> tuple[None, None]:
@@ -113,26 +113,65 @@ def collide(state: State, tables: Tables, w: int, k: int, j: int, hi: float, lo:
     apart = 0.5 * (2.0 * head.ball_radius - distance)
     one.x, one.y = one.x + apart * nx, one.y + apart * ny
     other.x, other.y = other.x - apart * nx, other.y - apart * ny
-    closing = -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny)
-    least = _least_rebound(one, other, nx, ny, head)
-    if least > 0.0 or closing > ULPS_OF_SPEED * (abs(one.vx) + abs(one.vy) + abs(other.vx) + abs(other.vy)):
-        vx, vy, ux, uy = one.vx, one.vy, other.vx, other.vy
-        gain = closing + max(head.ball_b * head.ball_b * closing, least)
-        share = 1.0 if other.status == CRUSHED else (0.0 if one.status == CRUSHED else 0.5)
-        one.vague = other.vague = gain * (one.slack + other.slack) / distance
-        one.vx, one.vy = vx + share * gain * nx, vy + share * gain * ny
-        other.vx, other.vy = ux - (1.0 - share) * gain * nx, uy - (1.0 - share) * gain * ny
-        _cap(one, other, nx, ny, head.max_speed, world)
-        _cap(other, one, -nx, -ny, head.max_speed, world)
-        world.bounces += 1
-        elements = tables.elements.shape[1]
-        log(ledger, world, one, k, elements + j, BOUNCE, nx, ny, vx, vy, ux, uy)
-        log(ledger, world, other, j, elements + k, BOUNCE, -nx, -ny, ux, uy, vx, vy)
+    if _persists(state.pairs, w, k, j, hi, lo):
+        _stick(one, other)
+    else:
+        _exchange(state, tables, w, k, j, nx, ny, distance, ledger)
     for ball in (one, other):
         if ball.status != CRUSHED:
             resolve_next(ball)
     plan_pairs(state, tables, state.pairs, w, k)
     plan_pairs(state, tables, state.pairs, w, j)
+
+
+@function
+def _persists(pairs: Table, w: int, k: int, j: int, hi: float, lo: float) -> bool:
+    """Whether two balls have hit each other more often at this instant than may be: against what else they touch."""
+    if pairs is None:
+        return False
+    pair = pairs[w, k, j]
+    pair.times = pair.times + 1 if pair.last_hi == hi and pair.last_lo == lo else 1
+    pair.last_hi, pair.last_lo = hi, lo
+    return pair.times % BOUNCES_AT_ONE_INSTANT == 0
+
+
+@function
+def _stick(one: Record, other: Record) -> None:
+    """Let two balls go on with the velocity that they have in common; a crushed one has none."""
+    vx, vy = 0.5 * (one.vx + other.vx), 0.5 * (one.vy + other.vy)
+    if CRUSHED in (one.status, other.status):
+        vx, vy = 0.0, 0.0
+    one.vx, one.vy, other.vx, other.vy = vx, vy, vx, vy
+
+
+@function
+def _exchange(
+    state: State, tables: Tables, w: int, k: int, j: int, nx: float, ny: float, distance: float, ledger: Table
+) -> None:
+    """The bounce of ball `k` and ball `j`, whose centres are `distance` [m] apart along (nx, ny)."""
+    one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
+    head = tables.scenes[world.scene]
+    closing = -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny)
+    noise = ULPS_OF_SPEED * (abs(one.vx) + abs(one.vy) + abs(other.vx) + abs(other.vy))
+    least = _least_rebound(one, other, nx, ny, head)
+    if least == 0.0 and closing <= noise:
+        return
+    vx, vy, ux, uy = one.vx, one.vy, other.vx, other.vy
+    gain = closing + max(head.ball_b * head.ball_b * closing, least)
+    share = 1.0 if other.status == CRUSHED else (0.0 if one.status == CRUSHED else 0.5)
+    # A small hop does not bounce the ball from what else it touches.
+    one.vague = other.vague = gain if closing <= noise else gain * (one.slack + other.slack) / distance
+    one.vx, one.vy = vx + share * gain * nx, vy + share * gain * ny
+    other.vx, other.vy = ux - (1.0 - share) * gain * nx, uy - (1.0 - share) * gain * ny
+    # A ball may be crushed against another one, too.
+    take_opposed(one, head, nx, ny)
+    take_opposed(other, head, -nx, -ny)
+    _cap(one, other, nx, ny, head.max_speed, world)
+    _cap(other, one, -nx, -ny, head.max_speed, world)
+    world.bounces += 1
+    elements = tables.elements.shape[1]
+    log(ledger, world, one, k, elements + j, BOUNCE, nx, ny, vx, vy, ux, uy)
+    log(ledger, world, other, j, elements + k, BOUNCE, -nx, -ny, ux, uy, vx, vy)
 
 
 @function

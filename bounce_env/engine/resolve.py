@@ -199,19 +199,34 @@ def _is_crushed(ball: Record, touch: Record, head: Record) -> bool:
     often, and is struck again.
     """
     strikes = touch.part >= 0 and towards(touch) > 0.0
-    clearance = CLEARANCE * head.extent
-    dx, dy = ball.x - ball.sx, ball.y - ball.sy
-    caught = ball.struck >= 0 and dx * dx + dy * dy <= clearance * clearance
-    if caught and touch.nx * ball.snx + touch.ny * ball.sny < -OPPOSED:
-        ball.squeezes += 1
-    elif caught and strikes and touch.part == ball.struck:
+    caught = _is_caught(ball, head)
+    if caught and take_opposed(ball, head, touch.nx, touch.ny):
+        return False
+    if caught and strikes and touch.part == ball.struck:
         ball.snx, ball.sny, ball.sux, ball.suy = touch.nx, touch.ny, touch.ux, touch.uy
         return ball.squeezes >= SQUEEZES
-    elif strikes:
+    if strikes:
         _note_strike(ball, touch)
     elif not caught:
         ball.struck = -1
     return False
+
+
+@function
+def _is_caught(ball: Record, head: Record) -> bool:
+    """Whether the ball has not come further than a clearance from where a closing part struck it."""
+    clearance = CLEARANCE * head.extent
+    dx, dy = ball.x - ball.sx, ball.y - ball.sy
+    return ball.struck >= 0 and dx * dx + dy * dy <= clearance * clearance
+
+
+@function
+def take_opposed(ball: Record, head: Record, nx: float, ny: float) -> bool:
+    """Take note of a bounce with this normal where it throws the ball back on the part that has it caught."""
+    opposed = _is_caught(ball, head) and nx * ball.snx + ny * ball.sny < -OPPOSED
+    if opposed:
+        ball.squeezes += 1
+    return opposed
 
 
 @function

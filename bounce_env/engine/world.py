@@ -128,8 +128,9 @@ class World:
 
         Both are of shape (balls, 2), or (x, y) for one ball. A paddle starts in the middle of its rail, a flipper at
         its `rest_angle`, a moving bumper at its `center`, a draggable wall where it is in the scene. A ball that
-        overlaps an element by no more than round-off is moved to its surface. Raises ValueError for another shape, for NaN or infinity, and where a ball overlaps an
-        element (which it names) or another ball; the world is then as before.
+        overlaps an element by no more than round-off is moved to its surface. Raises ValueError for another shape, for
+        NaN or infinity, and where a ball overlaps an element (which it names) or another ball; the world is then as
+        before.
         """
         at, speed = self._rows("position", position), self._rows("velocity", velocity)
         cores = cores_at_start(self.scene)

@@ -13,7 +13,7 @@ MAX_SPEED = 250.0  # m/s, more than any part's surface
 
 
 def moving_scene(rng: np.random.Generator, *, point: bool = False) -> Scene:
-    """A unit box with up to three flippers, two paddles, two dragged walls and a bumper on a rail; some things stand."""
+    """A unit box with up to three flippers, two paddles, two dragged walls, a bumper on a rail, and standing things."""
     pull = 0.0 if rng.random() < 0.2 else 10.0 ** rng.uniform(-1.0, 2.0)
     angle = rng.choice([0.0, 0.0, 0.5, rng.uniform(0.0, 2.0)]) * math.pi
     corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]

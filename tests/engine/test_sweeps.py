@@ -108,7 +108,7 @@ def test_sliding_capsules() -> None:
 def wall_gap(t, ball, ends, speeds, reach):
     """Distance of a ball from a wall, whose two ends start at `ends` and move at `speeds`, at times `t`."""
     x, y, vx, vy, gx, gy = map(np.longdouble, ball)
-    (ax, ay), (bx, by) = ((p + np.longdouble(v) * t for p, v in zip(*end, strict=True)) for end in zip(ends, speeds, strict=True))
+    ax, ay, bx, by = (p + np.longdouble(v) * t for p, v in zip(ends.ravel(), speeds.ravel(), strict=True))
     dx, dy = bx - ax, by - ay
     px, py = x + vx * t + gx * t * t / 2 - ax, y + vy * t + gy * t * t / 2 - ay
     share = np.clip((px * dx + py * dy) / (dx * dx + dy * dy), np.longdouble(0), np.longdouble(1))

@@ -58,13 +58,20 @@ def _meeting(state: State, tables: Tables, w: int, k: int, j: int) -> tuple[floa
     x = moved(one.x, one.vx, ax, s) - moved(other.x, other.vx, bx, t)
     y = moved(one.y, one.vy, ay, s) - moved(other.y, other.vy, by, t)
     ux, uy, vx, vy = sped(one.vx, ax, s), sped(one.vy, ay, s), sped(other.vx, bx, t), sped(other.vy, by, t)
-    reach, noise = 2.0 * head.ball_radius, ULPS_OF_SPEED * (abs(ux) + abs(uy) + abs(vx) + abs(vy))
+    reach, noise = 2.0 * head.ball_radius, _noise(one, other, ux, uy, vx, vy, head)
     if _keeps_touching(x, y, ux - vx, uy - vy, gx, gy, reach + slack, noise):
         return math.inf, 0.0
     after = circle_time(x, y, ux - vx, uy - vy, gx, gy, reach, slack, horizon)
     if not after <= horizon or after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
+
+
+@function
+def _noise(one: Record, other: Record, vx: float, vy: float, ux: float, uy: float, head: Record) -> float:
+    """Two balls that close slower than this [m/s] do not hit each other: rounding, or next to nothing under gravity."""
+    g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
+    return ULPS_OF_SPEED * (abs(vx) + abs(vy) + abs(ux) + abs(uy) + math.sqrt(g * head.ball_radius))
 
 
 @function
@@ -152,7 +159,7 @@ def _exchange(
     one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
     head = tables.scenes[world.scene]
     closing = -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny)
-    noise = ULPS_OF_SPEED * (abs(one.vx) + abs(one.vy) + abs(other.vx) + abs(other.vy))
+    noise = _noise(one, other, one.vx, one.vy, other.vx, other.vy, head)
     least = _least_rebound(one, other, nx, ny, head)
     if least == 0.0 and closing <= noise:
         return

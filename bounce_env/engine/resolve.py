@@ -293,6 +293,9 @@ def _project(ball: Record, touches: Table, w: int, first: int) -> bool:
     ball.vx, ball.vy = touches[w, first].ux, touches[w, first].uy
     striker = _striker(ball, touches, w)
     if striker < 0:
+        if not _is_allowed(ball, touches, w, vx, vy):
+            # Friction drives it in between: nothing comes towards the ball, so that it may stand.
+            ball.vx, ball.vy = 0.0, 0.0
         return True
     for i in range(ball.touched):
         for j in range(i):

@@ -74,7 +74,9 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
     if tables.gravity is not None:
         if settling:
             contact, support = FLYING, -1  # that contact had not begun yet
-        i = _change_contact(state, tables, w, k, contact, support, vx0, vy0, ledger)
+        # Told at once of a hit of something that it does not close on, a riding ball would be so for ever: it hops off.
+        again = contact == RIDING and at_once and state.worlds[w].bounces == bounces
+        i = _change_contact(state, tables, w, k, contact, support, again, vx0, vy0, ledger)
         corner = corner if i < 0 else -1
     if corner >= 0:
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
@@ -99,14 +101,15 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
 
 @function
 def _change_contact(
-    state: State, tables: Tables, w: int, k: int, contact: int, support: int, vx: float, vy: float, ledger: Table
-) -> int:
-    """Find the ball's contact and log the end of the one that it had, and the beginning of another.
+    state: State, tables: Tables, w: int, k: int, contact: int, support: int, off: bool, vx: float, vy: float,
+    ledger: Table,
+) -> int:  # fmt: skip
+    """Find the ball's contact, if it is not to fly `off`; log the end of the one that it had, the beginning of another.
 
     (vx, vy): its velocity [m/s] before. Returns which touched surface a new contact is with, -1 if there is none.
     """
     ball = state.balls[w, k]
-    i = _find_contact(state, tables, w, k)
+    i = -1 if off else _find_contact(state, tables, w, k)
     stopped = ball.contact == HELD and (vx != ball.vx or vy != ball.vy)  # held again, after a push
     if ball.contact == contact and ball.support == support and not stopped:
         return -1

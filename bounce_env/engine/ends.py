@@ -8,7 +8,7 @@ import math
 
 from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Record, Table, function, function_of_feature
-from bounce_env.engine.tolerances import ULPS_OF_SPEED
+from bounce_env.engine.tolerances import ULPS_OF_LENGTH, ULPS_OF_SPEED
 
 # Longer than anything lasts [s]: a sum with it is still a number.
 NEVER = 1e300
@@ -79,10 +79,10 @@ def _narrowing(ends: Record, shortest: float) -> float:
     closing, square = -(dx * ex + dy * ey), dx * dx + dy * dy - shortest * shortest
     if closing <= ULPS_OF_SPEED * (abs(dx * ex) + abs(dy * ey)):
         return NEVER
+    if square <= ULPS_OF_LENGTH * shortest * shortest:
+        return 0.0
     root = closing * closing - (ex * ex + ey * ey) * square
-    if square > 0.0 and root < 0.0:
-        return NEVER
-    return min(max(square, 0.0) / (closing + math.sqrt(max(root, 0.0))), NEVER)
+    return NEVER if root < 0.0 else min(square / (closing + math.sqrt(root)), NEVER)
 
 
 @function

@@ -67,6 +67,8 @@ WORLD = record(
     drag_hi="f8", drag_lo="f8",  # when drag acted last
     dirty="i8",  # whether `hits` has entries of the last step
     rows="i8",  # of the ledger in use
+    meet_hi="f8", meet_lo="f8",  # when two balls last hit each other
+    meets="i8", meet_speed="f8",  # at that instant: how often any two did, and the fastest [m/s] of them
 )  # fmt: skip
 # What a step without events reads comes first: it lies together in memory.
 BALL = record(
@@ -100,10 +102,7 @@ TOUCH = record(
     moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
     element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
 )  # fmt: skip
-PAIR = record(
-    hi="f8", lo="f8",  # when two balls hit each other while both keep to their flights
-    last_hi="f8", last_lo="f8", times="i8",  # when they last did, and how often at that instant
-)  # fmt: skip
+PAIR = record(hi="f8", lo="f8")  # when two balls hit each other while both keep to their flights
 COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
 ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
 MOTION = record(  # of a part, at the instant of its last command or stop

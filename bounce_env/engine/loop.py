@@ -184,7 +184,7 @@ def restart(state: State, tables: Tables, w: int) -> None:
     world = state.worlds[w]
     world.time_hi, world.time_lo = 0.0, 0.0
     world.bounces, world.speed_capped, world.rows = 0, 0, 0
-    world.drag_hi, world.drag_lo = -1.0, 0.0
+    world.drag_hi, world.drag_lo, world.meet_hi, world.meet_lo = -1.0, 0.0, -math.inf, 0.0
     clear_hits(state, w)
     _cool_down(state.cooling, w)
     _switch_on(state.disabled, w)

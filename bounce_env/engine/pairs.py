@@ -12,10 +12,19 @@ from bounce_env.engine.impact import circle_time
 from bounce_env.engine.instant import before, later, since
 from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
 from bounce_env.engine.law import capped
-from bounce_env.engine.layout import BOUNCE, CRUSHED, OUT, State, Tables
-from bounce_env.engine.resolve import log, take_opposed
-from bounce_env.engine.search import pull, resolve_next
-from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ROLLING, ULPS_OF_SPEED
+from bounce_env.engine.layout import BOUNCE, CONTACT_ENDS, CRUSHED, HELD, OUT, RESOLVE, State, Tables
+from bounce_env.engine.resolve import is_caught, log, take_opposed
+from bounce_env.engine.search import plan_rest, pull, resolve_next
+from bounce_env.engine.tolerances import (
+    CLEARANCE,
+    MEETINGS_AT_ONE_INSTANT,
+    ROLLING,
+    SQUEEZES,
+    STANDING,
+    ULPS_OF_LENGTH,
+    ULPS_OF_SPEED,
+    WEIGHTLESS,
+)
 
 
 def _no_difference(ax: Feature, ay: Feature, bx: Feature, by: Feature) -> tuple[None, None]:
@@ -120,35 +129,60 @@ def collide(state: State, tables: Tables, w: int, k: int, j: int, hi: float, lo:
     apart = 0.5 * (2.0 * head.ball_radius - distance)
     one.x, one.y = one.x + apart * nx, one.y + apart * ny
     other.x, other.y = other.x - apart * nx, other.y - apart * ny
-    if _persists(state.pairs, w, k, j, hi, lo):
-        _stick(one, other)
-    else:
-        _exchange(state, tables, w, k, j, nx, ny, distance, ledger)
-    for ball in (one, other):
-        if ball.status != CRUSHED:
+    _count(world, one, other, head, hi, lo)
+    _exchange(state, tables, w, k, j, nx, ny, distance, ledger)
+    world.meet_speed = max(world.meet_speed, _speeds(one, other))
+    for i in (k, j):
+        ball = state.balls[w, i]
+        if ball.status != CRUSHED and not (
+            world.meets > MEETINGS_AT_ONE_INSTANT and _stands(state, tables, w, i, ledger)
+        ):
             resolve_next(ball)
     plan_pairs(state, tables, state.pairs, w, k)
     plan_pairs(state, tables, state.pairs, w, j)
 
 
 @function
-def _persists(pairs: Table, w: int, k: int, j: int, hi: float, lo: float) -> bool:
-    """Whether two balls have hit each other more often at this instant than may be: against what else they touch."""
-    if pairs is None:
-        return False
-    pair = pairs[w, k, j]
-    pair.times = pair.times + 1 if pair.last_hi == hi and pair.last_lo == lo else 1
-    pair.last_hi, pair.last_lo = hi, lo
-    return pair.times % BOUNCES_AT_ONE_INSTANT == 0
+def _count(world: Record, one: Record, other: Record, head: Record, hi: float, lo: float) -> None:
+    """Count the hits of balls at one instant, and keep the fastest speed of any: what is left of it may be rounding.
+
+    Instants in between which no ball moves by more than what counts as touching are one.
+    """
+    t = since(hi, lo, world.meet_hi, world.meet_lo)
+    g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
+    if not (world.meet_speed + g * t) * t <= ULPS_OF_LENGTH * head.extent or t < 0.0:
+        world.meet_hi, world.meet_lo, world.meets, world.meet_speed = hi, lo, 0, 0.0
+    world.meets += 1
+    world.meet_speed = max(world.meet_speed, _speeds(one, other))
 
 
 @function
-def _stick(one: Record, other: Record) -> None:
-    """Let two balls go on with the velocity that they have in common; a crushed one has none."""
-    vx, vy = 0.5 * (one.vx + other.vx), 0.5 * (one.vy + other.vy)
-    if CRUSHED in (one.status, other.status):
-        vx, vy = 0.0, 0.0
-    one.vx, one.vy, other.vx, other.vy = vx, vy, vx, vy
+def _speeds(one: Record, other: Record) -> float:
+    return abs(one.vx) + abs(one.vy) + abs(other.vx) + abs(other.vy)
+
+
+@function
+def _stands(state: State, tables: Tables, w: int, k: int, ledger: Table) -> bool:
+    """Let a ball stand, for a while, that others keep hitting at one instant; False where a part is to crush it."""
+    ball, world = state.balls[w, k], state.worlds[w]
+    head = tables.scenes[world.scene]
+    if is_caught(ball, head):
+        ball.squeezes = SQUEEZES
+        return False
+    if ball.support >= 0:
+        log(
+            ledger, world, ball, k, ball.support, CONTACT_ENDS,
+            ball.nx, ball.ny, ball.vx, ball.vy, 0.0, 0.0,
+        )  # fmt: skip
+    ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
+    ball.contact, ball.rides, ball.support, ball.settling = HELD, -1, -1, 0
+    way = CLEARANCE * head.extent
+    g = magnitude(ball.gx, ball.gy)
+    while_falling = math.sqrt(2.0 * way / g) if g > WEIGHTLESS else math.inf
+    ball.hit_kind, ball.hit_after = RESOLVE, min(while_falling, way / max(world.meet_speed, STANDING))
+    ball.end_after = ball.hit_after
+    plan_rest(state, tables, w, k)
+    return True
 
 
 @function
@@ -159,12 +193,13 @@ def _exchange(
     one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
     head = tables.scenes[world.scene]
     closing = -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny)
-    noise = _noise(one, other, one.vx, one.vy, other.vx, other.vy, head)
+    noise = max(_noise(one, other, one.vx, one.vy, other.vx, other.vy, head), ULPS_OF_SPEED * world.meet_speed)
     least = _least_rebound(one, other, nx, ny, head)
-    if least == 0.0 and closing <= noise:
+    if least == 0.0 and closing <= 0.0:
         return
     vx, vy, ux, uy = one.vx, one.vy, other.vx, other.vy
-    gain = closing + max(head.ball_b * head.ball_b * closing, least)
+    # What is left of faster hits at this instant has no rebound: in between others it would go to and fro for ever.
+    gain = closing + max(head.ball_b * head.ball_b * closing if closing > noise else 0.0, least)
     share = 1.0 if other.status == CRUSHED else (0.0 if one.status == CRUSHED else 0.5)
     # A small hop does not bounce the ball from what else it touches.
     one.vague = other.vague = gain if closing <= noise else gain * (one.slack + other.slack) / distance

@@ -199,7 +199,7 @@ def _is_crushed(ball: Record, touch: Record, head: Record) -> bool:
     often, and is struck again.
     """
     strikes = touch.part >= 0 and towards(touch) > 0.0
-    caught = _is_caught(ball, head)
+    caught = is_caught(ball, head)
     if caught and take_opposed(ball, head, touch.nx, touch.ny):
         return False
     if caught and strikes and touch.part == ball.struck:
@@ -213,7 +213,7 @@ def _is_crushed(ball: Record, touch: Record, head: Record) -> bool:
 
 
 @function
-def _is_caught(ball: Record, head: Record) -> bool:
+def is_caught(ball: Record, head: Record) -> bool:
     """Whether the ball has not come further than a clearance from where a closing part struck it."""
     clearance = CLEARANCE * head.extent
     dx, dy = ball.x - ball.sx, ball.y - ball.sy
@@ -223,7 +223,7 @@ def _is_caught(ball: Record, head: Record) -> bool:
 @function
 def take_opposed(ball: Record, head: Record, nx: float, ny: float) -> bool:
     """Take note of a bounce with this normal where it throws the ball back on the part that has it caught."""
-    opposed = _is_caught(ball, head) and nx * ball.snx + ny * ball.sny < -OPPOSED
+    opposed = is_caught(ball, head) and nx * ball.snx + ny * ball.sny < -OPPOSED
     if opposed:
         ball.squeezes += 1
     return opposed

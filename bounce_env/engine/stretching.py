@@ -23,13 +23,13 @@ def segment_gap(
     """Distance [m] from a wall along (dx, dy) to (px, py) about its start, its rate of change [m/s], and the side.
 
     (qx, qy) is the ball's velocity relative to the start, (ex, ey) that of the wall's end. `facing` is the side, 1.0
-    or -1.0, that the ball is taken to be on while its height over the wall is no more than the slack; the distance
-    from the wall's line is negative on the other one. The side returned is the one that the height tells beyond that.
+    or -1.0, that the ball is taken to be on while its height over the wall is no more than a few times the slack; the
+    distance from the wall's line is negative on the other one. The side returned is the one that a larger height tells.
     """
     length = math.sqrt(dx * dx + dy * dy)
     ux, uy = dx / length, dy / length
     along, height = px * ux + py * uy, py * ux - px * uy
-    if abs(height) > slack:
+    if abs(height) > 4.0 * slack:  # a step along the surface may end a little deeper than it began
         facing = 1.0 if height > 0.0 else -1.0
     if -slack <= along <= length + slack:
         share = along / length

@@ -29,6 +29,10 @@ SEARCH_ENDS = 1e-9
 # Bounces resolved at one instant before the ball is left to the next event (and so to the event budget).
 BOUNCES_AT_ONE_INSTANT = 32
 
+# The same for hits of any two balls. What then still goes on does so between balls that are held in place by what else
+# they touch: they stand for as long as it takes to move by a clearance (CLEARANCE), and are then looked at again.
+MEETINGS_AT_ONE_INSTANT = 256
+
 # Nearer than this share of its way to a stop, a part may or may not have reached it: the stop's instant decides.
 UNSURE = 2.0**-40
 

@@ -14,6 +14,9 @@ Pixels = npt.NDArray[np.uint8]
 FINENESS = 8
 """Strokes are drawn this many times larger and scaled down, and a moving thing is placed to 1/FINENESS pixel."""
 
+_MOST_TURNED = 256
+"""Vectors for which a look is kept; a wall that is dragged never shows the same one for long."""
+
 _BAND = 64
 """Rows of a look that are drawn at a time, so that a large one needs little memory for its FINENESS."""
 
@@ -85,6 +88,8 @@ class Turned:
         """Draw it with its (0, 0) at `start`, for the vector from there to `end`, pixel coordinates."""
         way = (round((end[0] - start[0]) * FINENESS), round((end[1] - start[1]) * FINENESS))
         if way not in self._sprites:
+            if len(self._sprites) == _MOST_TURNED:
+                del self._sprites[next(iter(self._sprites))]
             self._sprites[way] = Sprite(self._look_of((way[0] / FINENESS, way[1] / FINENESS)))
         self._sprites[way].draw(target, *start)
 

@@ -359,6 +359,21 @@ def test_a_bad_picture_names_the_field(renderer: Renderer, field: str, value: ob
         renderer.frame(Picture(**{**good, field: value}))
 
 
+def test_a_dragged_wall_is_drawn_between_its_ends() -> None:
+    """Wherever they are, and however often they have moved."""
+    wall = Wall((0.2, 0.5), (0.8, 0.5), draggable=True)
+    renderer = Renderer(Scene(elements=(Wall((0, 0), (1, 0)), Wall((0, 1), (1, 1)), wall)), 400, 400)
+    empty = renderer.frame(Picture(balls=(), cores=[(0.1, 0.1, 0.2, 0.1)]))
+    for turn in range(600):
+        frame = renderer.frame(Picture(balls=(), cores=[(0.2, 0.3 + 0.0005 * turn, 0.8, 0.9 - 0.0005 * turn)]))
+    for share in (0.05, 0.5, 0.95):
+        y = (1.0 - share) * 0.5995 + share * 0.6005
+        place = _at(renderer, (0.2 + 0.6 * share, y))
+        assert (frame[place] != empty[place]).any(), share
+    place = _at(renderer, (0.5, 0.55))
+    assert (frame[place] == empty[place]).all()
+
+
 def test_parts_are_drawn_where_their_cores_are() -> None:
     """A flipper along its core at any angle, and a bumper on a rail away from where the scene puts it."""
     flipper = Flipper((0.5, 0.3), 0.3, radius=0.03, rest_angle=0.0, active_angle=1.0, up_speed=9.0, down_speed=9.0)

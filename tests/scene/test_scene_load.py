@@ -20,7 +20,7 @@ from bounce_env.scene import (
 POINT = "two numbers [x, y], each from -1e+09 to 1e+09"
 ZERO_OR_MORE = "a number >= 0 (at most 1e+09)"
 POSITIVE = "a number > 0 (from 1e-09 to 1e+09)"
-WALL_FIELDS = "start, end, b, f, kick, kick_threshold, cooldown, name, one_way"
+WALL_FIELDS = "start, end, b, f, kick, kick_threshold, cooldown, name, one_way, draggable, min_length, reach"
 
 
 def element(kind: str, fields: str) -> str:

@@ -40,6 +40,14 @@ SURFACE = {"b": FACTOR, "f": st.floats(0.0, 1.0), "kick": FACTOR, "kick_threshol
 NAME = st.text(st.characters(exclude_categories=["C", "Z"]) | st.sampled_from(" \"'\\#=[]"), min_size=1, max_size=8)
 ELEMENT = st.one_of(
     st.builds(lambda ends, **fields: Wall(*ends, **fields), SEGMENT, one_way=st.booleans(), **SURFACE),
+    st.builds(
+        lambda ends, low, high, **fields: Wall(*ends, draggable=True, reach=(low, high), **fields),
+        SEGMENT,
+        st.tuples(st.floats(-200.0, -100.0), st.floats(-200.0, -100.0)),
+        st.tuples(st.floats(100.5, 200.0), st.floats(100.5, 200.0)),
+        min_length=st.none() | st.floats(0.001, 0.01),
+        **SURFACE,
+    ),
     st.builds(Bumper, POINT, SIZE, **SURFACE),
     st.builds(
         lambda center, radius, start, span, **fields: Arc(center, radius, start, start + span, **fields),

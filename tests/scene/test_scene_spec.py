@@ -203,7 +203,7 @@ def test_a_missing_field_says_what_it_takes(spec, given, missing):
     ("spec", "field", "allowed"),
     [
         (Ball, "mass", "radius, b, f"),
-        (Wall, "draggable", f"start, end, one_way, {', '.join(SURFACE)}, name"),
+        (Wall, "length", f"start, end, one_way, draggable, min_length, reach, {', '.join(SURFACE)}, name"),
         (Bumper, "one_way", f"center, radius, rail_end, speed, {', '.join(SURFACE)}, name"),
         (Arc, "angle", f"center, radius, start_angle, end_angle, {', '.join(SURFACE)}, name"),
         (Paddle, "width", f"rail_start, rail_end, half_width, radius, max_speed, {', '.join(SURFACE)}, name"),
@@ -339,6 +339,31 @@ def test_a_bumper_moves_with_a_rail_and_a_speed_or_not_at_all() -> None:
     assert Bumper((0.0, 0.0), 0.5, rail_end=(1.0, 2.0), speed=1.0).bounds == (-0.5, -0.5, 1.5, 2.5)
 
 
+@pytest.mark.parametrize(
+    ("fields", "field", "words"),
+    [
+        ({"min_length": 0.5}, "min_length", "must be left out, or None, where draggable is false"),
+        ({"reach": ((0, 0), (1, 1))}, "reach", "must be left out, or None, where draggable is false"),
+        ({"draggable": True, "one_way": True}, "one_way", "must be false where draggable is true"),
+        ({"draggable": True, "min_length": 2.5}, "min_length", "must be at most 2, the length at first"),
+        ({"draggable": True, "min_length": 0.0}, "min_length", "must be a number > 0"),
+        ({"draggable": True, "reach": ((0, 0), (1, 1))}, "reach", r"a box that holds start = \[0.0, 0.0\] and end ="),
+        ({"draggable": True, "reach": ((0, 0), (0, 1))}, "reach", "two corners .* the lower left and the upper right"),
+        ({"draggable": 1}, "draggable", "must be true or false"),
+    ],
+)
+def test_what_a_draggable_wall_takes(fields, field, words) -> None:
+    with pytest.raises(ValueError, match=rf"{field}\n.*{words}"):
+        Wall((0, 0), (2, 0), **fields)
+
+
+def test_shortest_length_and_bounds_of_a_draggable_wall() -> None:
+    assert Wall((0, 0), (2, 0), draggable=True).shortest == 0.2
+    assert Wall((0, 0), (2, 0), draggable=True, min_length=0.5).shortest == 0.5
+    assert Wall((0, 0), (2, 0), draggable=True).bounds == (0, 0, 2, 0)
+    assert Wall((0, 0), (2, 0), draggable=True, reach=((-1, -2), (3, 4))).bounds == (-1, -2, 3, 4)
+
+
 def test_bounds_of_a_flipper_are_what_it_can_reach() -> None:
     flipper = Flipper((1.0, 1.0), 2.0, radius=0.5, rest_angle=0.0, active_angle=math.pi, up_speed=1.0, down_speed=1.0)
     assert flipper.bounds == pytest.approx((-1.5, 0.5, 3.5, 3.5))
@@ -346,8 +371,9 @@ def test_bounds_of_a_flipper_are_what_it_can_reach() -> None:
 
 def test_parts_are_the_elements_that_move() -> None:
     still, moving = Bumper((0.0, 0.0), 0.1), Bumper((0.0, 0.0), 0.1, rail_end=(1.0, 0.0), speed=1.0)
-    scene = Scene(elements=(Wall((0, 0), (1, 0)), Flipper(**TURNING), still, Paddle(**RAIL), moving))
-    assert [i for i, _ in scene.parts] == [1, 3, 4]
+    dragged = Wall((0, 0), (1, 0), draggable=True)
+    scene = Scene(elements=(Wall((0, 0), (1, 0)), Flipper(**TURNING), still, Paddle(**RAIL), moving, dragged))
+    assert [i for i, _ in scene.parts] == [1, 3, 4, 5]
 
 
 def test_max_speed_exceeds_that_of_a_flippers_tip() -> None:

@@ -161,6 +161,7 @@ _ALL = (
     Field(((6, 0), (7, 0), (7, 1)), (1, 0), name="field"),
     Paddle((0, 2), (1, 2), half_width=0.25, radius=0.25, max_speed=1, name="paddle"),
     Flipper((2, 2), 1, radius=0.25, rest_angle=0, active_angle=1, up_speed=1, down_speed=1, name="flipper"),
+    Wall((0, 3), (1, 3), draggable=True, name="dragged"),
 )
 
 

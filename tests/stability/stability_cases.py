@@ -2,6 +2,7 @@
 
 from moving_flippers import FLIPPERS
 from moving_paddles import PADDLES
+from moving_walls import WALLS
 from standing_commands import COMMANDS
 from standing_corners import CORNERS
 from standing_corridors import CORRIDORS
@@ -21,5 +22,5 @@ from standing_wedges import WEDGES
 
 CASES = [
     *DROPS, *HOLDS, *SLIDES, *CORRIDORS, *CORNERS, *WEDGES, *CURVES, *HOLLOWS, *STARTS, *EXTREMES, *PASSAGES, *FIELDS,
-    *KICKS, *COMMANDS, *ROOMS, *TAILS, *PADDLES, *FLIPPERS,
+    *KICKS, *COMMANDS, *ROOMS, *TAILS, *PADDLES, *FLIPPERS, *WALLS,
 ]  # fmt: skip

@@ -15,6 +15,8 @@ def distance(element: Element, core: list[float] | None, p: Point) -> float:
     """
     if core is not None and isinstance(element, Paddle | Flipper | Bumper):
         return _to_segment((core[0], core[1]), (core[2], core[3]), p) - element.radius
+    if core is not None and isinstance(element, Wall):
+        return _to_segment((core[0], core[1]), (core[2], core[3]), p)
     if isinstance(element, Wall) and not element.one_way:
         return _to_segment(element.start, element.end, p)
     if isinstance(element, Bumper):

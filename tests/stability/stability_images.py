@@ -36,6 +36,11 @@ class Image:
             start, end = self.point(element.start), self.point(element.end)
             left = isinstance(element, Wall) and element.one_way and self.upside_down
             changes |= {"start": end, "end": start} if left else {"start": start, "end": end}
+        if isinstance(element, Wall) and element.draggable:
+            changes["min_length"] = element.shortest * self.length
+            if element.reach is not None:
+                corners = np.sort([self.point(corner) for corner in element.reach], 0)
+                changes["reach"] = tuple(map(tuple, corners.tolist()))
         if isinstance(element, Bumper | Arc | Sensor) and element.center is not None:
             changes |= {"center": self.point(element.center), "radius": element.radius * self.length}
         if isinstance(element, Arc) and self.upside_down:
@@ -76,6 +81,8 @@ class Image:
                 return ("push", self.point(velocity, self.time))
             case ("command", name, float(value)):
                 return ("command", name, self.speed(value))
+            case ("command", name, (start, end)):
+                return ("command", name, (self.point(start, self.time), self.point(end, self.time)))
             case ("replace", scene):
                 return ("replace", self.scene(scene))
             case tuple():

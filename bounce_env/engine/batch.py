@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.drive import place
+from bounce_env.engine.disturb import place
 from bounce_env.engine.instant import later
 from bounce_env.engine.jit import kernel
 from bounce_env.engine.layout import Array, State, Tables, borrow_state, borrow_tables, new_state

@@ -9,7 +9,8 @@ import math
 from bounce_env.engine.arrive import arrive, end_flight, snap
 from bounce_env.engine.contact import resolve
 from bounce_env.engine.crossing import cross
-from bounce_env.engine.drive import block, crush, part_stops, rest_parts
+from bounce_env.engine.crush import crush
+from bounce_env.engine.drive import block, part_stops, rest_parts
 from bounce_env.engine.instant import before, since
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import (

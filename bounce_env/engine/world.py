@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.drive import command, disturb, drag, free_all, place, set_off
+from bounce_env.engine.command import command, command_ends
+from bounce_env.engine.crush import free_all
+from bounce_env.engine.disturb import disturb, place
+from bounce_env.engine.drive import set_off
 from bounce_env.engine.ends import set_ends_off
 from bounce_env.engine.instant import later
 from bounce_env.engine.jit import from_python, kernel
@@ -81,9 +84,9 @@ def _command(state: State, tables: Tables, part: int, velocity: float) -> None:
 
 
 @kernel
-def _drag(state: State, tables: Tables, part: int, velocities: Floats) -> None:
+def _command_ends(state: State, tables: Tables, part: int, velocities: Floats) -> None:
     state, tables = borrow_state(state), borrow_tables(tables)
-    drag(
+    command_ends(
         state, tables, state.motions, tables.parts, state.ends, tables.guides, 0, part,
         velocities[0, 0], velocities[0, 1], velocities[1, 0], velocities[1, 1],
     )  # fmt: skip
@@ -185,7 +188,7 @@ class World:
             raise ValueError(f"command: {name!r} must be one of the scene's parts: {sorted(names)}")
         part = self._parts[names[name]][1]
         if isinstance(part, Wall):
-            _drag(self._state, self._tables, names[name], _velocities(name, value, self.scene.max_speed))
+            _command_ends(self._state, self._tables, names[name], _velocities(name, value, self.scene.max_speed))
             return
         if isinstance(part, Flipper):
             if not isinstance(value, bool | np.bool_):

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import ConfigDict, Field, InstanceOf, StrictInt
 from pydantic.dataclasses import dataclass
 
-from bounce_env.engine.drive import command, command_unwatched, place
+from bounce_env.engine.command import command, command_unwatched
+from bounce_env.engine.disturb import place
 from bounce_env.engine.jit import Table, borrow, function, kernel
 from bounce_env.engine.layout import OUT, Array, State, Tables, borrow_state, borrow_tables, record
 from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run

@@ -240,6 +240,32 @@ WALLS = [
         expect=(*at(0.5, R, NEAR), *going(0.25, 0.0, NEAR)),
     ),
     Case(
+        name="scene is replaced while its floor rises",
+        why="the floor of the new one keeps its ends and its command, and carries the ball on",
+        scene=scene(floor(b=0.0), gravity=DOWN),
+        position=(0.0, R),
+        script=(
+            drag((0.0, 0.25)),
+            1.0,
+            ("replace", scene(floor(b=0.0), Wall((-2, 3), (2, 3), name="lid"), gravity=DOWN)),
+            1.0,
+        ),
+        expect=(*at(0.0, R + 0.5, NEAR), *going(0.0, 0.25, NEAR)),
+    ),
+    Case(
+        name="scene is replaced by one whose floor is elsewhere",
+        why="it is where the new scene has it: 0.5 m below where the ball is, which falls on: t^2 / 2",
+        scene=scene(floor(b=0.0), gravity=DOWN),
+        position=(0.0, R),
+        script=(
+            drag((0.0, 0.5)),
+            1.0,
+            ("replace", scene(Wall((-2, 0), (2, 0.0625), draggable=True, b=0.0, name="w"), gravity=DOWN)),
+            0.25,
+        ),
+        expect=(*at(0.0, R + 0.5 + 0.125 - 0.03125, NEAR), *going(0.0, 0.25, NEAR)),
+    ),
+    Case(
         name="a wall is told of velocities that are none",
         why="refused before anything moves",
         scene=scene(_TIED),

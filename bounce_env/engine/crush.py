@@ -1,0 +1,94 @@
+"""Balls that are crushed: the part that does it is blocked, and a command that opens the gap sets both free."""
+
+import math
+
+from bounce_env.engine.disturb import disturb
+from bounce_env.engine.drive import block, end_rides, hold_still, replan_part, resume_part
+from bounce_env.engine.ends import ends_of
+from bounce_env.engine.jit import Table, function
+from bounce_env.engine.layout import CRUSH, CRUSHED, HELD, OK, State, Tables
+from bounce_env.engine.pairs import plan_pairs
+from bounce_env.engine.parts import core_at, plan_zones, side_of_part, surface_velocity, turn_of
+from bounce_env.engine.resolve import log
+from bounce_env.engine.search import plan_parts, pull, resolve_next
+from bounce_env.engine.tolerances import CLEARANCE
+from bounce_env.engine.touch import on_capsule
+
+
+@function
+def crush(
+    state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, vx: float, vy: float, ledger: Table
+) -> None:
+    """Stop the part that crushes ball `k`, and hold the ball until a command opens the gap.
+
+    A part that shuttles turns back instead. (vx, vy): the ball's velocity [m/s] before.
+    """
+    if motions is None or parts is None:
+        return
+    ball, world = state.balls[w, k], state.worlds[w]
+    m = ball.struck
+    part = parts[world.scene, m]
+    if part.shuttle > 0.0:
+        ball.status, ball.struck, ball.squeezes = OK, -1, 0
+        resolve_next(ball)
+    else:
+        ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
+        ball.contact, ball.rides, ball.support, ball.settling = HELD, -1, part.element, 0
+        ball.nx, ball.ny = ball.snx, ball.sny
+        log(ledger, world, ball, k, part.element, CRUSH, ball.nx, ball.ny, vx, vy, ball.sux, ball.suy)
+        ball.hit_after, ball.end_after, ball.sensor_after = math.inf, math.inf, math.inf
+        gx, gy = pull(tables.gravity, ball)
+        plan_zones(ball, state, tables, state.zones, tables.parts, w, k, world.scene, gx, gy, 0.0)
+        plan_parts(state, tables, w, k)
+    plan_pairs(state, tables, state.pairs, w, k)
+    block(state, tables, motions, parts, w, m, ledger)
+
+
+@function
+def mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int) -> None:
+    """Part `m` has set off: it may not close on a crushed ball, and frees those that it moves away from."""
+    if motions is None or parts is None:
+        return
+    world = state.worlds[w]
+    motion, part, turn = motions[w, m], parts[world.scene, m], turn_of(tables.turns, world.scene, m)
+    ends = ends_of(state.ends, w, m)
+    for k in range(state.balls.shape[1]):
+        ball = state.balls[w, k]
+        if ball.status != CRUSHED:
+            continue
+        x, y, ux, uy, back, front = core_at(part, motion, turn, ends, world.time_hi, world.time_lo)
+        side = side_of_part(state.part_sides, w, k, m)
+        nx, ny, distance, nearest = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side)
+        if distance - part.reach > 2.0 * CLEARANCE * tables.scenes[world.scene].extent:
+            continue
+        if side != 0 and not back <= nearest <= front:
+            continue
+        vx, vy = surface_velocity(motion, part, turn, ends, ux, uy, front, nearest * ux, nearest * uy)
+        closing = vx * nx + vy * ny
+        if closing > 0.0:
+            hold_still(motion, ends, part)
+        elif closing < 0.0:
+            _free(state, tables, motions, parts, w, k, m)
+
+
+@function
+def _free(state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, m: int) -> None:
+    """Let a crushed ball go on, and what crushed it, unless that is part `m`, which has been told where to."""
+    ball, world = state.balls[w, k], state.worlds[w]
+    crusher = ball.struck
+    ball.status, ball.struck, ball.squeezes = OK, -1, 0
+    disturb(state, tables, w, k, 1.0, 0.0, 0.0)
+    if crusher != m and crusher >= 0:
+        end_rides(state, tables, w, crusher)
+        resume_part(state.ends, tables.guides, motions[w, crusher], parts[world.scene, crusher], world, w, crusher)
+        replan_part(state, tables, state.zones, w, crusher)
+
+
+@function
+def free_all(state: State, tables: Tables, motions: Table, parts: Table, w: int) -> None:
+    """Let all crushed balls go on: something else than a command may have opened their gaps."""
+    if motions is None or parts is None:
+        return
+    for k in range(state.balls.shape[1]):
+        if state.balls[w, k].status == CRUSHED:
+            _free(state, tables, motions, parts, w, k, -1)

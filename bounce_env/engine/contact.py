@@ -17,6 +17,8 @@ from bounce_env.engine.layout import (
     HELD,
     RESOLVE,
     RIDING,
+    SETTLES,
+    STANDS,
     State,
     Tables,
 )
@@ -39,12 +41,14 @@ from bounce_env.engine.search import plan_rest, plan_standing
 from bounce_env.engine.tolerances import (
     ALIGNED,
     BALANCE,
+    CLEARANCE,
     CORNER,
     PRESSING,
     STANDING,
     SWING,
     ULPS_OF_LENGTH,
     ULPS_OF_SPEED,
+    WEIGHTLESS,
 )
 from bounce_env.engine.touch import collect_touches
 
@@ -54,6 +58,34 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
     """Bounce a ball from all that it touches, decide what it does next, and plan that.
 
     at_once: whether its flight has ended where it began, by something that it was to hit.
+    """
+    ball = state.balls[w, k]
+    if ball.settling == STANDS:
+        duration = _stand(ball, tables.scenes[state.worlds[w].scene], state.worlds[w])
+    else:
+        duration = _bounce_and_go(state, tables, w, k, at_once, ledger)
+        if ball.status == CRUSHED:
+            return
+    if duration >= 0.0:
+        ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
+    plan_rest(state, tables, w, k)
+    plan_pairs(state, tables, state.pairs, w, k)
+
+
+@function
+def _stand(ball: Record, head: Record, world: Record) -> float:
+    """Let a ball that others keep hitting stand for as long as it takes to move by a clearance: a duration [s]."""
+    ball.settling = 0
+    way, g = CLEARANCE * head.extent, math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+    falling = math.sqrt(2.0 * way / g) if g > WEIGHTLESS else math.inf
+    return min(falling, way / max(world.meet_speed, STANDING))
+
+
+@function
+def _bounce_and_go(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger: Table) -> float:
+    """Bounce a ball from all that it touches, let it fly, slide or rest, and search what stands in its way.
+
+    Returns after how long [s] it is to be looked at again because its last bounces are summed up to then, otherwise -1.
     """
     ball, bounces = state.balls[w, k], state.worlds[w].bounces
     if abs(ball.vx) + abs(ball.vy) < STANDING:
@@ -69,7 +101,7 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
         take_vague(ball, state.touches, w)
     single, corner, vx0, vy0 = bounce_from_all(state, tables, w, k, ledger)
     if ball.status == CRUSHED:
-        return
+        return -1.0
     _let_go(ball)
     if tables.gravity is not None:
         if settling:
@@ -93,10 +125,7 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
         # Something comes before the bounces are over: they go on one by one.
         _let_go(ball)
         ball.vx, ball.vy, ball.settling, duration = vx, vy, 0, -1.0
-    if duration >= 0.0:
-        ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
-    plan_rest(state, tables, w, k)
-    plan_pairs(state, tables, state.pairs, w, k)
+    return duration
 
 
 @function
@@ -375,7 +404,7 @@ def _settle(state: State, tables: Tables, w: int, k: int, single: int) -> float:
         speed, pull = way / duration, 0.0
     ball.vx, ball.vy, ball.ax, ball.ay = touch.ux + speed * ux, touch.uy + speed * uy, pull * ux, pull * uy
     _support(ball, touch)
-    ball.nx, ball.ny, ball.settling = touch.nx, touch.ny, 1
+    ball.nx, ball.ny, ball.settling = touch.nx, touch.ny, SETTLES
     return duration
 
 

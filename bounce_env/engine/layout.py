@@ -80,7 +80,7 @@ BALL = record(
     contact="i8",  # the face that the ball slides on, FLYING, HELD or RIDING
     rides="i8",  # the part that carries it, sliding or held; otherwise -1
     support="i8",  # the element that it is in contact with, -1 in free flight
-    settling="i8",  # 1 while the last bounces before a contact are summed
+    settling="i8",  # SETTLES while the last bounces before a contact are summed, STANDS (see `engine.pairs`), or 0
     nx="f8", ny="f8",  # normal of that contact, to the ball
     rolling="i8",  # the element with a curve that it was last set rolling on, otherwise -1
     slack="f8",  # [m] what counts as touching at that instant
@@ -135,6 +135,8 @@ LINE, RING_ENTRY, FIELD_EDGE = 0, 1, 2
 CLOSED, MINOR, MAJOR = 0, 1, 2
 # `contact` of a ball that is in flight, of one that rests, and of one that slides on a part.
 FLYING, HELD, RIDING = -1, -2, -3
+# `settling`
+SETTLES, STANDS = 1, 2
 # Kinds of a ball's next event.
 NEXT_HIT, NEXT_PART, NEXT_SENSOR, NEXT_ZONE = 0, 1, 2, 3
 

@@ -12,18 +12,15 @@ from bounce_env.engine.impact import circle_time
 from bounce_env.engine.instant import before, later, since
 from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
 from bounce_env.engine.law import capped
-from bounce_env.engine.layout import BOUNCE, CONTACT_ENDS, CRUSHED, HELD, OUT, RESOLVE, State, Tables
+from bounce_env.engine.layout import BOUNCE, CONTACT_ENDS, CRUSHED, HELD, OUT, STANDS, State, Tables
 from bounce_env.engine.resolve import is_caught, log, take_opposed
-from bounce_env.engine.search import plan_rest, pull, resolve_next
+from bounce_env.engine.search import pull, resolve_next
 from bounce_env.engine.tolerances import (
-    CLEARANCE,
     MEETINGS_AT_ONE_INSTANT,
     ROLLING,
     SQUEEZES,
-    STANDING,
     ULPS_OF_LENGTH,
     ULPS_OF_SPEED,
-    WEIGHTLESS,
 )
 
 
@@ -176,12 +173,8 @@ def _stands(state: State, tables: Tables, w: int, k: int, ledger: Table) -> bool
         )  # fmt: skip
     ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
     ball.contact, ball.rides, ball.support, ball.settling = HELD, -1, -1, 0
-    way = CLEARANCE * head.extent
-    g = magnitude(ball.gx, ball.gy)
-    while_falling = math.sqrt(2.0 * way / g) if g > WEIGHTLESS else math.inf
-    ball.hit_kind, ball.hit_after = RESOLVE, min(while_falling, way / max(world.meet_speed, STANDING))
-    ball.end_after = ball.hit_after
-    plan_rest(state, tables, w, k)
+    resolve_next(ball)
+    ball.settling = STANDS
     return True
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from unittest import mock
 
 import numpy as np
+import stability_case
 from conftest import soak_count
 from moving_scenes import command_at_random, moving_scene, start
 
@@ -102,7 +103,7 @@ def test_points_between_walls() -> None:
             gravity=(0.0, -float(rng.choice([0.0, 1.0, 10.0]))), rest_speed=float(rng.choice([0.0, 0.02])),
             elements=(lid, *sides, piston),
         )  # fmt: skip
-        world = new_world(scene, 1)
+        world = stability_case.new_world(scene)
         angle = rng.uniform(0.0, 2.0 * np.pi)
         world.reset(position=rng.uniform((0.1, 0.6), (0.9, 0.9)), velocity=(np.cos(angle), np.sin(angle)))
         rises = rng.uniform(-1.0, 1.0, 20)

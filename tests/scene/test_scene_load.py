@@ -192,8 +192,8 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         (element("Wall", ENDS), "elements[0]: type = 'Wall'", f"must be {TYPES}"),
         (element("wall", "start = [0, 0]"), "elements[0] (wall): end", f"required: {POINT}"),
         (
-            element("wall", f"{ENDS}\ndraggable = true"),
-            "elements[0] (wall): draggable = true",
+            element("wall", f"{ENDS}\nlength = 1"),
+            "elements[0] (wall): length = 1",
             f"unknown field: must be one of {WALL_FIELDS}",
         ),
         (

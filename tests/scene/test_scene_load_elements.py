@@ -112,7 +112,7 @@ def test_a_file_gives_the_elements_that_it_says(tmp_path):
         Field(((0, 0), (1, 0), (0.5, 2)), (0.5, -3), name="wind"),
         Sensor(center=(2, 2), radius=0.25, drain=True, name="hole"),
         Wall((0, 0), (1, 0), one_way=True, cooldown=0.5),
-        Wall((0, 1), (1, 1), draggable=True, min_length=0.25, reach=((-1, 0), (2, 3)), cooldown=0.5),
+        Wall((0, 1), (1, 1), draggable=True, min_length=0.25, reach=((-1, 0), (2, 3))),
         Bumper((5, 5), 1, cooldown=0.5),
         Paddle((1, 0), (4, 0), half_width=0.5, radius=0.125, max_speed=3, cooldown=1),
     )

@@ -5,10 +5,9 @@ Sides matter to a ball of no radius, which can be on a wall, and to what is cros
 
 import math
 
-from bounce_env.engine.arc import in_span
 from bounce_env.engine.ends import ends_of, height_over, is_dragged
 from bounce_env.engine.flight import bending, fly, moved, sped, touch_tolerance
-from bounce_env.engine.impact import beside, leaves_end
+from bounce_env.engine.impact import leaves_end
 from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Feature, Record, Table, function
 from bounce_env.engine.layout import CLOSED, NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE, State, Tables
@@ -22,20 +21,23 @@ from bounce_env.engine.touch import on_capsule
 def snap(state: State, tables: Tables, w: int, k: int) -> None:
     """Put the ball on the surface of what it hits, along the normal: the rounding of the flight ends here."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
+    face, part = -1, -1
     if ball.next_kind == NEXT_PART:
-        _snap_to_part(state, tables, state.motions, tables.parts, w, k, ball.part_index)
-    elif ball.hit_kind == ON_FACE:
-        _snap_to_face(ball, tables.faces, ball.hit_index, scene)
+        part = ball.part_index
+    elif ball.hit_kind in (ON_FACE, OFF_END):
+        face = ball.hit_index
     elif ball.hit_kind == ON_CIRCLE:
-        _snap_to_circle(ball, tables.circles, ball.hit_index, scene)
+        _snap_to_circle(ball, tables.circles, scene)
     elif ball.hit_kind == ON_ARC:
-        _snap_to_arc(ball, tables.arcs, ball.hit_index, scene)
-    elif ball.hit_kind == OFF_END:
-        _snap_to_face(ball, tables.faces, ball.hit_index, scene)
+        _snap_to_arc(ball, tables.arcs, scene)
     elif ball.contact >= 0:
-        _snap_to_face(ball, tables.faces, ball.contact, scene)
-    elif ball.rides >= 0:
-        _snap_to_part(state, tables, state.motions, tables.parts, w, k, ball.rides)
+        face = ball.contact
+    else:
+        part = ball.rides
+    if face >= 0:
+        _snap_to_face(ball, tables.faces, face, scene)
+    if part >= 0:
+        _snap_to_part(state, tables, state.motions, tables.parts, w, k, part)
 
 
 @function
@@ -71,10 +73,10 @@ def _snap_to_face(ball: Record, faces: Table, index: int, scene: int) -> None:
 
 
 @function
-def _snap_to_circle(ball: Record, circles: Table, index: int, scene: int) -> None:
+def _snap_to_circle(ball: Record, circles: Table, scene: int) -> None:
     if circles is None:
         return
-    circle = circles[scene, index]
+    circle = circles[scene, ball.hit_index]
     dx, dy = ball.x - circle.x, ball.y - circle.y
     stretch = circle.reach / math.sqrt(dx * dx + dy * dy)
     ball.x = circle.x + dx * stretch
@@ -82,10 +84,10 @@ def _snap_to_circle(ball: Record, circles: Table, index: int, scene: int) -> Non
 
 
 @function
-def _snap_to_arc(ball: Record, arcs: Table, index: int, scene: int) -> None:
+def _snap_to_arc(ball: Record, arcs: Table, scene: int) -> None:
     if arcs is None:
         return
-    arc = arcs[scene, index]
+    arc = arcs[scene, ball.hit_index]
     dx, dy = ball.x - arc.x, ball.y - arc.y
     distance = math.sqrt(dx * dx + dy * dy)
     reach = arc.outer if abs(distance - arc.outer) <= abs(distance - arc.inner) else arc.inner
@@ -101,41 +103,11 @@ def _snap_to_part(state: State, tables: Tables, motions: Table, parts: Table, w:
     part, ends = parts[scene, m], ends_of(state.ends, w, m)
     x, y, ux, uy, back, front = core_at(part, motions[w, m], turn_of(tables.turns, scene, m), ends, ball.hi, ball.lo)
     side = side_of_part(state.part_sides, w, k, m)
-    nx, ny, distance, _ = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side)
+    nx, ny, distance, _ = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side, ball.slack)
     # A search may end before a hit: then there is nothing to put the ball on.
     if distance - part.reach <= SEARCH_ENDS * (part.reach + front - back):
         ball.x += (part.reach - distance) * nx
         ball.y += (part.reach - distance) * ny
-        _keep_outside(ball, tables.faces, tables.circles, tables.arcs, tables.scenes[scene], scene)
-
-
-@function
-def _keep_outside(ball: Record, faces: Table, circles: Table, arcs: Table, head: Record, scene: int) -> None:
-    """Put a ball that a part has been found to touch on what else stands and touches it.
-
-    A part that keeps pushing it there would else, rounding by rounding, push it through.
-    """
-    if faces is not None:
-        for i in range(head.faces):
-            face = faces[scene, i]
-            dx, dy = ball.x - face.x, ball.y - face.y
-            gap = abs(dy * face.ux - dx * face.uy) - face.reach
-            if abs(gap) <= ball.slack and beside(dx, dy, face.ux, face.uy, face.length, ball.slack):
-                _snap_to_face(ball, faces, i, scene)
-    if circles is not None:
-        for i in range(head.circles):
-            circle = circles[scene, i]
-            dx, dy = ball.x - circle.x, ball.y - circle.y
-            if abs(math.sqrt(dx * dx + dy * dy) - circle.reach) <= ball.slack:
-                _snap_to_circle(ball, circles, i, scene)
-    if arcs is not None:
-        for i in range(head.arcs):
-            arc = arcs[scene, i]
-            dx, dy = ball.x - arc.x, ball.y - arc.y
-            distance = math.sqrt(dx * dx + dy * dy)
-            touches = min(abs(distance - arc.outer), abs(distance - arc.inner)) <= ball.slack
-            if touches and in_span(arc, dx, dy, ball.slack):
-                _snap_to_arc(ball, arcs, i, scene)
 
 
 @function

@@ -2,42 +2,41 @@
 
 from bounce_env.engine.crush import mind_crushed
 from bounce_env.engine.disturb import slow_down
-from bounce_env.engine.drive import end_rides, replan_part, set_off
-from bounce_env.engine.ends import set_ends_off
+from bounce_env.engine.drive import end_rides, replan_part, resume_part, set_off
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import State, Tables
 
 
 @function
 def command(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int, velocity: float) -> None:
-    """Let part `m` of world `w` move at `velocity` [m/s or rad/s] from now on. The command it has changes no bit."""
+    """Let part `m` of world `w` move at `velocity` [m/s or rad/s]."""
     if motions is None or parts is None:
         return
-    motion, world = motions[w, m], state.worlds[w]
     slow_down(state, tables, tables.drags, w)
-    if velocity == motion.command:
-        return
-    end_rides(state, tables, w, m)
-    set_off(motion, parts[world.scene, m], world, velocity)
-    mind_crushed(state, tables, motions, parts, w, m)
-    replan_part(state, tables, state.zones, w, m)
+    if velocity != motions[w, m].command:
+        motions[w, m].command = velocity
+        _move_otherwise(state, tables, motions, parts, w, m)
 
 
 @function
 def command_ends(
-    state: State, tables: Tables, motions: Table, parts: Table, all_ends: Table, guides: Table, w: int, m: int,
-    vx0: float, vy0: float, vx1: float, vy1: float,
-) -> None:  # fmt: skip
-    """Let the ends of the dragged wall `m` move at these velocities [m/s] from now on, as far as they may."""
-    if motions is None or parts is None or all_ends is None or guides is None:
+    state: State, tables: Tables, all_ends: Table, w: int, m: int, vx0: float, vy0: float, vx1: float, vy1: float
+) -> None:
+    """Let the ends of the dragged wall `m` move at these velocities [m/s], as far as they may."""
+    if all_ends is None:
         return
-    motion, ends, world = motions[w, m], all_ends[w, m], state.worlds[w]
+    ends = all_ends[w, m]
     slow_down(state, tables, tables.drags, w)
-    if vx0 == ends.cx0 and vy0 == ends.cy0 and vx1 == ends.cx1 and vy1 == ends.cy1:
-        return
+    if vx0 != ends.cx0 or vy0 != ends.cy0 or vx1 != ends.cx1 or vy1 != ends.cy1:
+        ends.cx0, ends.cy0, ends.cx1, ends.cy1 = vx0, vy0, vx1, vy1
+        _move_otherwise(state, tables, state.motions, tables.parts, w, m)
+
+
+@function
+def _move_otherwise(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int) -> None:
+    """Let part `m` move as it has now been commanded to."""
     end_rides(state, tables, w, m)
-    ends.cx0, ends.cy0, ends.cx1, ends.cy1 = vx0, vy0, vx1, vy1
-    set_ends_off(motion, ends, guides[world.scene, m], world.time_hi, world.time_lo)
+    resume_part(state, tables, motions, parts, w, m)
     mind_crushed(state, tables, motions, parts, w, m)
     replan_part(state, tables, state.zones, w, m)
 

@@ -58,10 +58,8 @@ def mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w: 
             continue
         x, y, ux, uy, back, front = core_at(part, motion, turn, ends, world.time_hi, world.time_lo)
         side = side_of_part(state.part_sides, w, k, m)
-        nx, ny, distance, nearest = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side)
+        nx, ny, distance, nearest = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side, ball.slack)
         if distance - part.reach > 2.0 * CLEARANCE * tables.scenes[world.scene].extent:
-            continue
-        if side != 0 and not back <= nearest <= front:
             continue
         vx, vy = surface_velocity(motion, part, turn, ends, ux, uy, front, nearest * ux, nearest * uy)
         closing = vx * nx + vy * ny
@@ -74,13 +72,13 @@ def mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w: 
 @function
 def _free(state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, m: int) -> None:
     """Let a crushed ball go on, and what crushed it, unless that is part `m`, which has been told where to."""
-    ball, world = state.balls[w, k], state.worlds[w]
+    ball = state.balls[w, k]
     crusher = ball.struck
     ball.status, ball.struck, ball.squeezes = OK, -1, 0
     disturb(state, tables, w, k, 1.0, 0.0, 0.0)
     if crusher != m and crusher >= 0:
         end_rides(state, tables, w, crusher)
-        resume_part(state.ends, tables.guides, motions[w, crusher], parts[world.scene, crusher], world, w, crusher)
+        resume_part(state, tables, motions, parts, w, crusher)
         replan_part(state, tables, state.zones, w, crusher)
 
 

@@ -28,12 +28,22 @@ def set_off(motion: Record, part: Record, world: Record, velocity: float) -> Non
 
 
 @function
-def resume_part(all_ends: Table, guides: Table, motion: Record, part: Record, world: Record, w: int, m: int) -> None:
-    """Let a part that was blocked move as it was last commanded to."""
-    if all_ends is not None and guides is not None and is_dragged(all_ends[w, m], part):
-        set_ends_off(motion, all_ends[w, m], guides[world.scene, m], world.time_hi, world.time_lo)
+def resume_part(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int) -> None:
+    """Let part `m` move, from now on, as it was last commanded to."""
+    if motions is None or parts is None:
         return
-    set_off(motion, part, world, motion.command)
+    motion, world = motions[w, m], state.worlds[w]
+    part = parts[world.scene, m]
+    if is_dragged(ends_of(state.ends, w, m), part):
+        _set_wall_off(motion, state.ends, tables.guides, world, w, m)
+    else:
+        set_off(motion, part, world, motion.command)
+
+
+@function
+def _set_wall_off(motion: Record, all_ends: Table, guides: Table, world: Record, w: int, m: int) -> None:
+    if all_ends is not None and guides is not None:
+        set_ends_off(motion, all_ends[w, m], guides[world.scene, m], world.time_hi, world.time_lo)
 
 
 @function

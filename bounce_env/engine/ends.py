@@ -33,12 +33,6 @@ def is_dragged(ends: Record, part: Record) -> bool:
 
 
 @function
-def stretches(ends: Record) -> bool:
-    """Whether the ends move, and not both alike."""
-    return ends.vx0 != ends.vx1 or ends.vy0 != ends.vy1
-
-
-@function
 def line_at(ends: Record, t: float) -> tuple[float, float, float, float, float]:
     """Where the wall is after `t` seconds of its motion: its start (x, y) [m], unit vector along it, length [m]."""
     x, y = ends.x0 + ends.vx0 * t, ends.y0 + ends.vy0 * t

@@ -8,6 +8,7 @@ part's position and velocity, and the same functions serve. `reach` is the obsta
 import math
 
 from bounce_env.engine.arc import crossing_time
+from bounce_env.engine.baa import open_for
 from bounce_env.engine.flight import bending, dot, grazes, moved, slow_on_circle, sped, swept
 from bounce_env.engine.jit import Feature, function
 from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED, WEIGHTLESS
@@ -231,8 +232,7 @@ def curved_circle_time(
                 return max(t + 2.0 * gap / (root - rate), 0.0)
             rate = max(rate, 0.0)
             gap = max(gap, 0.0)
-        root = math.sqrt(rate * rate + 2.0 * bound * gap)
-        t += 2.0 * gap / (root - rate) if rate < 0.0 else (rate + root) / bound
+        t += open_for(gap, rate, bound)
         if t > horizon:
             return math.inf
     # Along the circle's tangent from a touch the gap hardly opens, and each step is but a small one.

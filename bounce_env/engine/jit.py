@@ -32,16 +32,17 @@ F = TypeVar("F", bound=Callable[..., Any])
 POLICY: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 # Without their wrappers for Python and C, which nobody calls, functions compile twice as fast.
 INLINED = {**POLICY, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-COMPILED_PACKAGES = ("engine", "games")
 
 
 @functools.cache
-def sources_hash() -> str:
-    """SHA-256 over every source file that can end up in a kernel, by name and content."""
-    package = Path(__file__).resolve().parent.parent
+def sources_hash(folder: Path) -> str:
+    """SHA-256 over every source file that can end up in a kernel of `folder`, by name and content.
+
+    These are the engine's, and where the kernel is not the engine's those beside it.
+    """
     digest = hashlib.sha256()
-    for folder in COMPILED_PACKAGES:
-        for path in sorted((package / folder).glob("*.py")):
+    for place in sorted({Path(__file__).resolve().parent, folder}):
+        for path in sorted(place.glob("*.py")):
             digest.update(path.name.encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -55,7 +56,8 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
 
     def __init__(self, python_function: Callable[..., Any]) -> None:
         super().__init__(python_function)
-        self._cache_file._version = f"{numba.__version__} {sources_hash()}"
+        folder = Path(python_function.__code__.co_filename).resolve().parent
+        self._cache_file._version = f"{numba.__version__} {sources_hash(folder)}"
 
 
 def function(python_function: F) -> F:

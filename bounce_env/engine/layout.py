@@ -80,7 +80,7 @@ BALL = record(
     contact="i8",  # the face that the ball slides on, FLYING, HELD or RIDING
     rides="i8",  # the part that carries it, sliding or held; otherwise -1
     support="i8",  # the element that it is in contact with, -1 in free flight
-    settling="i8",  # SETTLES while the last bounces before a contact are summed, STANDS (see `engine.pairs`), or 0
+    settling="i8",  # SETTLES while the last bounces before a contact are summed, JAMMED between other balls, or 0
     nx="f8", ny="f8",  # normal of that contact, to the ball
     rolling="i8",  # the element with a curve that it was last set rolling on, otherwise -1
     slack="f8",  # [m] what counts as touching at that instant
@@ -96,6 +96,7 @@ BALL = record(
 )  # fmt: skip
 TOUCH = record(
     nx="f8", ny="f8", ux="f8", uy="f8",  # unit normal to the ball, velocity of the surface [m/s]
+    gap="f8",  # [m] to it: next to nothing, but for rounding
     bend="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
     along="f8", length="f8",  # [m] of a straight one: where on it the ball is, with the normal on its left
     least="f8",  # [m/s] the smallest rebound from a part, where there is one
@@ -136,7 +137,7 @@ CLOSED, MINOR, MAJOR = 0, 1, 2
 # `contact` of a ball that is in flight, of one that rests, and of one that slides on a part.
 FLYING, HELD, RIDING = -1, -2, -3
 # `settling`
-SETTLES, STANDS = 1, 2
+SETTLES, JAMMED = 1, 2
 # Kinds of a ball's next event.
 NEXT_HIT, NEXT_PART, NEXT_SENSOR, NEXT_ZONE = 0, 1, 2, 3
 

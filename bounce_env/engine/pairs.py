@@ -12,7 +12,7 @@ from bounce_env.engine.impact import circle_time
 from bounce_env.engine.instant import before, later, since
 from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
 from bounce_env.engine.law import capped
-from bounce_env.engine.layout import BOUNCE, CONTACT_ENDS, CRUSHED, HELD, OUT, STANDS, State, Tables
+from bounce_env.engine.layout import BOUNCE, CRUSHED, FLYING, JAMMED, OUT, SETTLES, State, Tables
 from bounce_env.engine.resolve import is_caught, log, take_opposed
 from bounce_env.engine.search import pull, resolve_next
 from bounce_env.engine.tolerances import (
@@ -129,11 +129,11 @@ def collide(state: State, tables: Tables, w: int, k: int, j: int, hi: float, lo:
     _count(world, one, other, head, hi, lo)
     _exchange(state, tables, w, k, j, nx, ny, distance, ledger)
     world.meet_speed = max(world.meet_speed, _speeds(one, other))
-    for i in (k, j):
-        ball = state.balls[w, i]
-        if ball.status != CRUSHED and not (
-            world.meets > MEETINGS_AT_ONE_INSTANT and _stands(state, tables, w, i, ledger)
-        ):
+    if world.meets > MEETINGS_AT_ONE_INSTANT:
+        _jam(state, tables, w, k, j, nx, ny, ledger)
+        _jam(state, tables, w, j, k, -nx, -ny, ledger)
+    for ball in (one, other):
+        if ball.status != CRUSHED:
             resolve_next(ball)
     plan_pairs(state, tables, state.pairs, w, k)
     plan_pairs(state, tables, state.pairs, w, j)
@@ -159,23 +159,21 @@ def _speeds(one: Record, other: Record) -> float:
 
 
 @function
-def _stands(state: State, tables: Tables, w: int, k: int, ledger: Table) -> bool:
-    """Let a ball stand, for a while, that others keep hitting at one instant; False where a part is to crush it."""
-    ball, world = state.balls[w, k], state.worlds[w]
-    head = tables.scenes[world.scene]
-    if is_caught(ball, head):
+def _jam(state: State, tables: Tables, w: int, k: int, j: int, nx: float, ny: float, ledger: Table) -> None:
+    """Stop ball `k`, which ball `j` and others keep hitting at one instant; where a part has it caught, that is to
+    crush it.
+    """
+    ball, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
+    if ball.status == CRUSHED:
+        return
+    if is_caught(ball, tables.scenes[world.scene]):
         ball.squeezes = SQUEEZES
-        return False
-    if ball.support >= 0:
-        log(
-            ledger, world, ball, k, ball.support, CONTACT_ENDS,
-            ball.nx, ball.ny, ball.vx, ball.vy, 0.0, 0.0,
-        )  # fmt: skip
-    ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
-    ball.contact, ball.rides, ball.support, ball.settling = HELD, -1, -1, 0
-    resolve_next(ball)
-    ball.settling = STANDS
-    return True
+        return
+    if ball.settling == SETTLES:
+        ball.contact, ball.support = FLYING, -1  # that contact does not begin
+    vx, vy = ball.vx, ball.vy
+    ball.vx, ball.vy, ball.settling = 0.0, 0.0, JAMMED
+    log(ledger, world, ball, k, tables.elements.shape[1] + j, BOUNCE, nx, ny, vx, vy, other.vx, other.vy)
 
 
 @function

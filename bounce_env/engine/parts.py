@@ -7,7 +7,7 @@ at a speed that is constant between commands and stops; or it is a wall, both en
 import math
 
 from bounce_env.engine.arc import crossing_time
-from bounce_env.engine.ends import ends_of, is_dragged, line_at, stretches, velocity_on
+from bounce_env.engine.ends import ends_of, is_dragged, line_at, velocity_on
 from bounce_env.engine.flight import dot, moved, sped, swept, touch_tolerance
 from bounce_env.engine.impact import capsule_time, face_time, falling_time
 from bounce_env.engine.instant import before, later, since
@@ -63,6 +63,20 @@ def surface_velocity(
         spin = turn * motion.velocity
         return -spin * ry, spin * rx
     return motion.velocity * ux, motion.velocity * uy
+
+
+@function
+def spin_of(
+    motion: Record, part: Record, turn: int, ends: Record, ux: float, uy: float, front: float
+) -> tuple[float, bool]:
+    """How fast [rad/s] a part turns now, and whether it turns or stretches: its surface does not move as one.
+
+    The core lies along u, up to `front` [m].
+    """
+    if ends is not None and is_dragged(ends, part):
+        spin = ((ends.vy1 - ends.vy0) * ux - (ends.vx1 - ends.vx0) * uy) / front
+        return spin, ends.vx0 != ends.vx1 or ends.vy0 != ends.vy1
+    return turn * motion.velocity, turn != 0 and motion.velocity != 0.0
 
 
 @function
@@ -123,6 +137,9 @@ def plan_zones(
         return
     for m in range(tables.scenes[scene].parts):
         part, zone, turn = parts[scene, m], zones[w, k, m], turn_of(tables.turns, scene, m)
+        if is_dragged(ends_of(state.ends, w, m), part):
+            zone.inside, zone.after = 1, math.inf
+            continue
         if now == 0.0:
             zone.inside, zone.after = 1 if _in_zone(ball, part, turn) else 0, 0.0
         elif zone.after <= now:
@@ -136,8 +153,6 @@ def plan_zones(
 
 @function
 def _in_zone(ball: Record, part: Record, turn: int) -> bool:
-    if part.span == 0.0:
-        return True
     x, y = ball.x - part.x, ball.y - part.y
     if turn != 0:
         border = ZONE_MARGIN * (part.front + part.reach)
@@ -148,8 +163,6 @@ def _in_zone(ball: Record, part: Record, turn: int) -> bool:
 @function
 def _zone_change(ball: Record, part: Record, turn: int, gx: Feature, gy: Feature, inside: bool, after: float) -> float:
     """When the ball next passes the border of a part's zone, from the flight's start, no earlier than `after`."""
-    if part.span == 0.0:
-        return math.inf
     x, y = ball.x - part.x, ball.y - part.y
     if turn != 0:
         border, sense = ZONE_MARGIN * (part.front + part.reach), 1.0 if inside else -1.0
@@ -209,8 +222,8 @@ def meet_wall(
     if ends is None:
         return math.inf
     vx, vy = vx - ends.vx0, vy - ends.vy0
-    if stretches(ends):
-        ex, ey = ends.vx1 - ends.vx0, ends.vy1 - ends.vy0
+    ex, ey = ends.vx1 - ends.vx0, ends.vy1 - ends.vy0
+    if ex != 0.0 or ey != 0.0:
         if not _is_near(px, py, vx, vy, gx, gy, length * ux, length * uy, ex, ey, reach + slack, horizon):
             return math.inf
         return stretching_time(px, py, vx, vy, gx, gy, length * ux, length * uy, ex, ey, reach, side, slack, horizon)

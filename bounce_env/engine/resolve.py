@@ -199,9 +199,9 @@ def _is_crushed(ball: Record, touch: Record, head: Record) -> bool:
     often, and is struck again.
     """
     strikes = touch.part >= 0 and towards(touch) > 0.0
-    caught = is_caught(ball, head)
-    if caught and take_opposed(ball, head, touch.nx, touch.ny):
+    if take_opposed(ball, head, touch.nx, touch.ny):
         return False
+    caught = is_caught(ball, head)
     if caught and strikes and touch.part == ball.struck:
         ball.snx, ball.sny, ball.sux, ball.suy = touch.nx, touch.ny, touch.ux, touch.uy
         return ball.squeezes >= SQUEEZES

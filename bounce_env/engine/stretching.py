@@ -11,6 +11,7 @@ impact").
 
 import math
 
+from bounce_env.engine.baa import closed_after, open_for
 from bounce_env.engine.flight import magnitude, moved, sped
 from bounce_env.engine.jit import Feature, function
 from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
@@ -57,29 +58,10 @@ def _bound(
 
 
 @function
-def _step(gap: float, rate: float, bound: float) -> float:
-    """The first root of gap + rate h - bound h^2 / 2, in the form in which nothing cancels."""
-    root = math.sqrt(rate * rate + 2.0 * bound * gap)
-    return 2.0 * gap / (root - rate) if rate < 0.0 else (rate + root) / bound
-
-
-@function
 def stretching_time(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    gx: Feature,
-    gy: Feature,
-    dx: float,
-    dy: float,
-    ex: float,
-    ey: float,
-    reach: float,
-    side: int,
-    slack: float,
-    horizon: float,
-) -> float:
+    x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, dx: float, dy: float, ex: float, ey: float,
+    reach: float, side: int, slack: float, horizon: float,
+) -> float:  # fmt: skip
     """Hit of a wall that runs from the origin along (dx, dy) [m] and changes by (ex, ey) [m/s], not both 0.
 
     All is relative to the wall's start, which moves uniformly. A duration [s] up to `horizon`, or inf. side: on which
@@ -105,15 +87,13 @@ def stretching_time(
         bound = _bound(px, py, qx, qy, pull, rx, ry, ex, ey, window)
         if gap <= slack:
             if rate < -ULPS_OF_SPEED * (speed + spread):
-                root = math.sqrt(max(rate * rate + 2.0 * bound * gap, 0.0))
-                # Deeper than it began it closes now: going back would end where nothing closes yet.
-                after = t + 2.0 * max(gap, 0.0) / (root - rate)
+                after = t + closed_after(gap, rate, bound)
                 return after if after <= horizon else math.inf
             rate, gap = max(rate, 0.0), max(gap, 0.0)
         before = t
-        nearer = min(window, 3.0 * _step(gap, rate, bound))
+        nearer = min(window, 3.0 * open_for(gap, rate, bound))
         bound = _bound(px, py, qx, qy, pull, rx, ry, ex, ey, nearer)
-        t += min(_step(gap, rate, bound), nearer)
+        t += min(open_for(gap, rate, bound), nearer)
         if rate >= 0.0:
             # Along the surface no step is shorter than that in which a gap changes by what counts as touching.
             t = max(t, before + math.sqrt(2.0 * slack / bound))

@@ -6,27 +6,27 @@ The ball does not move while its bounces at one instant are resolved, so the lis
 import math
 
 from bounce_env.engine.arc import in_span
-from bounce_env.engine.ends import ends_of, is_dragged, stretches
+from bounce_env.engine.ends import ends_of
 from bounce_env.engine.impact import beside
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import State, Tables
-from bounce_env.engine.parts import core_at, is_off, side_of_part, surface_velocity, turn_of
+from bounce_env.engine.parts import core_at, is_off, side_of_part, spin_of, surface_velocity, turn_of
 from bounce_env.engine.search import is_gate, side_on
 from bounce_env.engine.tolerances import ROLLING
 
 
 @function
 def on_capsule(
-    x: float, y: float, ux: float, uy: float, back: float, front: float, side: int
+    x: float, y: float, ux: float, uy: float, back: float, front: float, side: int, slack: float
 ) -> tuple[float, float, float, float]:
     """From the nearest point of a capsule's core to (x, y): unit normal (nx, ny), distance [m], and where it is.
 
     The core runs from `back` to `front` [m] along the unit (ux, uy) through the origin; where is along that.
-    side: on which side of a core without thickness a ball of no radius is, and the normal points, wherever along its
-    line that is; otherwise 0.
+    side: on which side a ball of no radius is of a core without thickness, of which the ends count up to the slack, and
+    to which the normal points; the distance is negative on the other one. Otherwise 0.
     """
-    along = x * ux + y * uy
-    if side != 0 or back <= along <= front:
+    along, more = x * ux + y * uy, slack if side != 0 else 0.0
+    if back - more <= along <= front + more:
         height = y * ux - x * uy
         facing = 1.0 if (height >= 0.0 if side == 0 else side > 0) else -1.0
         return -facing * uy, facing * ux, facing * height, along
@@ -66,12 +66,29 @@ def collect_touches(state: State, tables: Tables, w: int, k: int) -> None:
 
 
 @function
-def _add(ball: Record, touches: Table, w: int, nx: float, ny: float, bend: float, element: int, face: int) -> None:
+def keep_outside(ball: Record, touches: Table, w: int) -> None:
+    """Put a ball that touches a part on what stands and touches it, too.
+
+    It has been put on the part; one that keeps pushing it there would, rounding by rounding, push it through.
+    """
+    pushed = False
+    for i in range(ball.touched):
+        pushed = pushed or touches[w, i].part >= 0
+    for i in range(ball.touched):
+        touch = touches[w, i]
+        if pushed and touch.part < 0:
+            ball.x, ball.y = ball.x - touch.gap * touch.nx, ball.y - touch.gap * touch.ny
+
+
+@function
+def _add(
+    ball: Record, touches: Table, w: int, nx: float, ny: float, gap: float, bend: float, element: int, face: int
+) -> None:
     if ball.touched == touches.shape[1]:
         return
     touch = touches[w, ball.touched]
     touch.nx, touch.ny, touch.ux, touch.uy = nx, ny, 0.0, 0.0
-    touch.bend, touch.element, touch.face, touch.part, touch.moves = bend, element, face, -1, 0
+    touch.gap, touch.bend, touch.element, touch.face, touch.part, touch.moves = gap, bend, element, face, -1, 0
     ball.touched += 1
 
 
@@ -105,7 +122,8 @@ def _touch_faces(
         if is_gate(gates, scene, i) and (facing < 0.0 or height < face.reach - ball.slack):
             continue
         listed = ball.touched
-        _add(ball, touches, w, -facing * face.uy, facing * face.ux, 0.0, face.element, i)
+        gap = facing * height - face.reach
+        _add(ball, touches, w, -facing * face.uy, facing * face.ux, gap, 0.0, face.element, i)
         if ball.touched > listed:
             along = dx * face.ux + dy * face.uy
             touches[w, listed].along = along if facing > 0.0 else face.length - along
@@ -126,7 +144,8 @@ def _touch_circles(
         if square > reach * reach or is_off(disabled, w, circle.element):
             continue
         distance = math.sqrt(square)
-        _add(ball, touches, w, dx / distance, dy / distance, 1.0 / circle.reach, circle.element, -1)
+        gap = distance - circle.reach
+        _add(ball, touches, w, dx / distance, dy / distance, gap, 1.0 / circle.reach, circle.element, -1)
 
 
 @function
@@ -149,7 +168,8 @@ def _touch_arcs(
         facing = 1.0 if outside else -1.0
         bend = 1.0 / arc.outer if outside else -1.0 / arc.inner
         nx, ny = facing * (dx / distance), facing * (dy / distance)
-        _add(ball, touches, w, nx, ny, bend, arc.element, -1)
+        gap = distance - arc.outer if outside else arc.inner - distance
+        _add(ball, touches, w, nx, ny, gap, bend, arc.element, -1)
 
 
 @function
@@ -178,13 +198,10 @@ def _touch_parts(
         x, y, ux, uy, back, front = core_at(part, motion, turn, ends, ball.hi, ball.lo)
         dx, dy = ball.x - x, ball.y - y
         side = side_of_part(sides, w, k, m)
-        nx, ny, distance, nearest = on_capsule(dx, dy, ux, uy, back, front, side)
+        nx, ny, distance, nearest = on_capsule(dx, dy, ux, uy, back, front, side, ball.slack)
         if abs(distance) > part.reach + ball.slack or is_off(disabled, w, part.element):
             continue
-        if side != 0 and not back - ball.slack <= nearest <= front + ball.slack:
-            continue
-        spin = _spin(motion, part, turn, ends, ux, uy, front)
-        moves = spin != 0.0 or _stretches(ends, part)
+        spin, moves = spin_of(motion, part, turn, ends, ux, uy, front)
         reach = front + part.reach if moves or turn != 0 else part.reach
         rx, ry = nearest * ux + part.radius * nx, nearest * uy + part.radius * ny
         vx, vy = surface_velocity(motion, part, turn, ends, ux, uy, front, rx, ry)
@@ -197,7 +214,8 @@ def _touch_parts(
             if not straight and (side != 0 or back + ball.slack < nearest < front - ball.slack):
                 continue
             listed = ball.touched
-            _add(ball, touches, w, nx, ny, 0.0 if straight else 1.0 / part.reach, part.element, -1)
+            gap, bend = distance - part.reach, 0.0 if straight else 1.0 / part.reach
+            _add(ball, touches, w, nx, ny, gap, bend, part.element, -1)
             if ball.touched == listed:
                 return
             touch = touches[w, listed]
@@ -205,19 +223,3 @@ def _touch_parts(
             touch.moves = 1 if moves else 0
             touch.length = front - back
             touch.along = nearest - back if ux * ny > uy * nx else front - nearest
-
-
-@function
-def _spin(motion: Record, part: Record, turn: int, ends: Record, ux: float, uy: float, front: float) -> float:
-    """How fast [rad/s] a part turns now."""
-    if ends is not None and is_dragged(ends, part):
-        return ((ends.vy1 - ends.vy0) * ux - (ends.vx1 - ends.vx0) * uy) / front
-    return turn * motion.velocity
-
-
-@function
-def _stretches(ends: Record, part: Record) -> bool:
-    """Whether a part is a wall whose ends do not move alike."""
-    if ends is None:
-        return False
-    return is_dragged(ends, part) and stretches(ends)

@@ -8,6 +8,7 @@ a hit.
 
 import math
 
+from bounce_env.engine.baa import closed_after, open_for
 from bounce_env.engine.flight import magnitude, moved, sped
 from bounce_env.engine.jit import Feature, function
 from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
@@ -31,20 +32,9 @@ def turning_gap(
 
 @function
 def turning_time(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    gx: Feature,
-    gy: Feature,
-    ux: float,
-    uy: float,
-    front: float,
-    reach: float,
-    spin: float,
-    slack: float,
-    horizon: float,
-) -> float:
+    x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, ux: float, uy: float, front: float,
+    reach: float, spin: float, slack: float, horizon: float,
+) -> float:  # fmt: skip
     """Hit of a capsule that turns at `spin` [rad/s] about the origin, before `horizon`: a duration [s], or inf.
 
     Its core runs `front` [m] along the unit vector (ux, uy) now. Where the ball neither comes closer nor leaves for
@@ -71,13 +61,10 @@ def turning_time(
         gap = distance - reach - away
         if gap <= slack:
             if rate < -ULPS_OF_SPEED * (abs(qx) + abs(qy) + abs(spin) * (front + reach)):
-                root = math.sqrt(max(rate * rate + 2.0 * bound * gap, 0.0))
-                # Deeper than it began it closes now: going back would end where nothing closes yet.
-                after = t + 2.0 * max(gap, 0.0) / (root - rate)
+                after = t + closed_after(gap, rate, bound)
                 return after if after <= horizon else math.inf
             rate, gap = max(rate, 0.0), max(gap, 0.0)
-        root = math.sqrt(rate * rate + 2.0 * bound * gap)
-        t += 2.0 * gap / (root - rate) if rate < 0.0 else max((rate + root) / bound, least)
+        t += open_for(gap, rate, bound) if rate < 0.0 else max(open_for(gap, rate, bound), least)
         if t > horizon:
             return math.inf
     return t

@@ -6,15 +6,20 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.command import command, command_ends
-from bounce_env.engine.crush import free_all
-from bounce_env.engine.disturb import disturb, place
-from bounce_env.engine.drive import set_off
-from bounce_env.engine.ends import set_ends_off
-from bounce_env.engine.instant import later
-from bounce_env.engine.jit import from_python, kernel
-from bounce_env.engine.layout import LEDGER, OUT, State, Tables, borrow_state, borrow_tables, new_state
-from bounce_env.engine.loop import LEDGER_FULL, clear_hits, restart, resume, run
+from bounce_env.engine.entry import (
+    advance_to,
+    begin_call,
+    command_part,
+    command_wall,
+    place_ball,
+    push_balls,
+    reset_world,
+    resolve_all,
+    resume_as_told,
+)
+from bounce_env.engine.jit import from_python
+from bounce_env.engine.layout import LEDGER, OUT, State, Tables, new_state
+from bounce_env.engine.loop import LEDGER_FULL
 from bounce_env.engine.overlap import Core, apart, cleared, cores_at_start
 from bounce_env.engine.pack import pack, switch_ends
 from bounce_env.engine.parts import offset_at
@@ -29,80 +34,6 @@ MAX_BALLS = 64
 _LEDGER_ROWS = 1024
 
 _offset_at = from_python(offset_at)
-
-
-@kernel
-def _reset(state: State, tables: Tables, position: Floats, velocity: Floats) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    restart(state, tables, 0)
-    for k in range(position.shape[0]):
-        place(state, tables, 0, k, position[k, 0], position[k, 1], velocity[k, 0], velocity[k, 1])
-
-
-@kernel
-def _begin(state: State, seconds: float) -> tuple[float, float]:
-    """Begin a call of `advance`: the instant it goes to."""
-    clear_hits(state, 0)
-    resume(state, 0)
-    target: tuple[float, float] = later(state.worlds[0].time_hi, state.worlds[0].time_lo, seconds)
-    return target
-
-
-@kernel
-def _advance(state: State, tables: Tables, hi: float, lo: float, max_events: int, ledger: Any) -> int:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    code: int = run(state, tables, 0, hi, lo, max_events, ledger)
-    return code
-
-
-@kernel
-def _push(state: State, tables: Tables, dvx: float, dvy: float) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    for k in range(state.balls.shape[1]):
-        disturb(state, tables, 0, k, 1.0, dvx, dvy)
-
-
-@kernel
-def _switched(state: State, tables: Tables) -> None:
-    """Resolve every ball anew: an element has been switched on or off."""
-    state, tables = borrow_state(state), borrow_tables(tables)
-    free_all(state, tables, state.motions, tables.parts, 0)
-    for k in range(state.balls.shape[1]):
-        disturb(state, tables, 0, k, 1.0, 0.0, 0.0)
-
-
-@kernel
-def _place(state: State, tables: Tables, k: int, x: float, y: float, vx: float, vy: float) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    place(state, tables, 0, k, x, y, vx, vy)
-
-
-@kernel
-def _command(state: State, tables: Tables, part: int, velocity: float) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    command(state, tables, state.motions, tables.parts, 0, part, velocity)
-
-
-@kernel
-def _command_ends(state: State, tables: Tables, part: int, velocities: Floats) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    command_ends(
-        state, tables, state.motions, tables.parts, state.ends, tables.guides, 0, part,
-        velocities[0, 0], velocities[0, 1], velocities[1, 0], velocities[1, 1],
-    )  # fmt: skip
-
-
-@kernel
-def _set_ends_off(motions: Any, ends: Any, guides: Any, world: Any, part: int) -> None:
-    """As `_set_off`, for a dragged wall."""
-    guide = guides[world[0].scene, part]
-    set_ends_off(motions[0, part], ends[0, part], guide, world[0].time_hi, world[0].time_lo)
-
-
-@kernel
-def _set_off(motions: Any, parts: Any, world: Any, part: int, velocity: float) -> None:
-    """Let a part move before any flight has been planned: no ball has to mind it yet."""
-    set_off(motions[0, part], parts[world[0].scene, part], world[0], velocity)
 
 
 class World:
@@ -140,7 +71,7 @@ class World:
         for k, (x, y) in enumerate(at.tolist()):
             at[k] = cleared(self.scene, cores, x, y)
         apart(self.scene, at)
-        _reset(self._state, self._tables, at, speed)
+        reset_world(self._state, self._tables, at, speed)
         self._switch_ends()
         self._started = True
 
@@ -159,16 +90,16 @@ class World:
         if max_events < 1:
             raise ValueError(f"max_events = {max_events!r}: must be >= 1")
         world = self._state.worlds[0]
-        hi, lo = _begin(self._state, float(seconds))
+        hi, lo = begin_call(self._state, float(seconds))
         if not ledger:
-            _advance(self._state, self._tables, hi, lo, max_events, None)
+            advance_to(self._state, self._tables, hi, lo, max_events, None)
             return None
         pages: list[npt.NDArray[Any]] = []
         page = np.zeros(_LEDGER_ROWS, LEDGER)
         code = LEDGER_FULL
         while code == LEDGER_FULL:
             world.rows = 0
-            code = _advance(self._state, self._tables, hi, lo, max_events, page)
+            code = advance_to(self._state, self._tables, hi, lo, max_events, page)
             pages.append(page[: world.rows].copy())
         return np.concatenate(pages)
 
@@ -188,7 +119,7 @@ class World:
             raise ValueError(f"command: {name!r} must be one of the scene's parts: {sorted(names)}")
         part = self._parts[names[name]][1]
         if isinstance(part, Wall):
-            _command_ends(self._state, self._tables, names[name], _velocities(name, value, self.scene.max_speed))
+            command_wall(self._state, self._tables, names[name], _velocities(name, value, self.scene.max_speed))
             return
         if isinstance(part, Flipper):
             if not isinstance(value, bool | np.bool_):
@@ -197,7 +128,7 @@ class World:
         else:
             fastest = part.max_speed if isinstance(part, Paddle) else part.speed
             velocity = _speed(name, value, fastest)
-        _command(self._state, self._tables, names[name], velocity)
+        command_part(self._state, self._tables, names[name], velocity)
 
     def enable(self, name: str, on: bool) -> None:
         """Switch an element on or off: one that is off is not hit, and a ball that it supports falls. On after `reset`.
@@ -225,7 +156,7 @@ class World:
                     cleared(self.scene, self._cores(), x, y, disabled=others)
         disabled[0, index] = not on
         self._switch_ends()
-        _switched(self._state, self._tables)
+        resolve_all(self._state, self._tables)
 
     def push(self, change: npt.ArrayLike) -> None:
         """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now. Raises ValueError for NaN and infinity."""
@@ -233,7 +164,7 @@ class World:
         rows = np.array(change, np.float64)
         if rows.shape != (2,) or not np.isfinite(rows).all():
             raise ValueError(f"push = {change!r}: must be (dvx, dvy), finite")
-        _push(self._state, self._tables, float(rows[0]), float(rows[1]))
+        push_balls(self._state, self._tables, float(rows[0]), float(rows[1]))
 
     def replace(self, scene: Scene) -> None:
         """Go on in another scene: time, balls and their velocities stay; a part of the same name and kind keeps its
@@ -253,52 +184,43 @@ class World:
         old, new = self._state.worlds[0], state.worlds[0]
         for name in ("time_hi", "time_lo", "bounces", "speed_capped", "drag_hi", "drag_lo"):
             new[name] = old[name]
-        commands = self._move_parts(scene, state, tables)
+        self._move_parts(scene, state, tables)
         balls, cores = self._now()[0], np.empty((len(scene.parts), 4))
         view(state, tables, 0, np.empty((0, 4)), cores)
         for k, (x, y, vx, vy) in enumerate(balls.tolist()):
             if self._state.balls[0, k].status != OUT:
                 x, y = cleared(scene, _cores_by_index(scene, cores), x, y)  # noqa: PLW2901
-            _place(state, tables, k, x, y, vx, vy)
+            place_ball(state, tables, k, x, y, vx, vy)
         out = self._state.balls["status"][0] == OUT
         state.balls[0, out] = self._state.balls[0, out]
-        for m, velocity in commands.items():
-            if isinstance(scene.parts[m][1], Wall):
-                _set_ends_off(state.motions, state.ends, tables.guides, state.worlds, m)
-            else:
-                _set_off(state.motions, tables.parts, state.worlds, m, velocity)
+        for m in range(len(scene.parts)):
+            resume_as_told(state, tables, m)
         self.scene, self._tables, self._state, self._parts = scene, tables, state, scene.parts
 
-    def _move_parts(self, scene: Scene, state: State, tables: Tables) -> dict[int, float]:
-        """Put the parts of a new scene where those of the same name are; returns what is to be commanded."""
-        commands: dict[int, float] = {}
+    def _move_parts(self, scene: Scene, state: State, tables: Tables) -> None:
+        """Put the parts of a new scene, at rest, where those of the same name are, with their commands."""
         if state.motions is None or tables.parts is None:
-            return commands
+            return
         known = {part.name: m for m, (_, part) in enumerate(self._parts) if part.name}
         for m, (_, part) in enumerate(scene.parts):
             motion, row = state.motions[0, m], tables.parts[0, m]
-            motion.offset, motion.velocity, motion.command = row.start, row.shuttle, row.shuttle
+            motion.offset, motion.command = row.start, row.shuttle
             motion.hi, motion.lo = state.worlds[0].time_hi, state.worlds[0].time_lo
-            before = known.get(part.name)
+            before = known.get(part.name, -1)
             if isinstance(part, Wall):
                 assert state.ends is not None
                 assert tables.guides is not None
                 self._move_wall(part, before, state.ends[0, m], tables.guides[0, m])
-                commands[m] = 0.0
-                continue
-            if before is None or type(self._parts[before][1]) is not type(part):
-                continue
-            assert self._state.motions is not None
-            was = self._state.motions[0, before]
-            offset = _offset_at(was, motion.hi, motion.lo)
-            motion.offset, motion.velocity = min(max(offset, 0.0), float(row.span)), 0.0
-            commands[m] = min(max(float(was.command), -float(row.down_speed)), float(row.up_speed))
-        return commands
+            elif before >= 0 and type(self._parts[before][1]) is type(part):
+                assert self._state.motions is not None
+                was = self._state.motions[0, before]
+                motion.offset = min(max(_offset_at(was, motion.hi, motion.lo), 0.0), float(row.span))
+                motion.command = min(max(float(was.command), -float(row.down_speed)), float(row.up_speed))
 
-    def _move_wall(self, wall: Wall, before: int | None, ends: Any, guide: Any) -> None:
+    def _move_wall(self, wall: Wall, before: int, ends: Any, guide: Any) -> None:
         """Put the ends of a new scene's wall, at rest, where those of the same one are, with their commands."""
         ends.x0, ends.y0, ends.x1, ends.y1 = guide.sx, guide.sy, guide.ex, guide.ey
-        was = None if before is None else self._parts[before][1]
+        was = self._parts[before][1] if before >= 0 else None
         if isinstance(was, Wall) and (was.start, was.end, was.reach) == (wall.start, wall.end, wall.reach):
             assert self._state.ends is not None
             ends.x0, ends.y0, ends.x1, ends.y1 = self._now()[1][before]

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -81,17 +82,12 @@ class Turned:
     """
 
     def __init__(self, look_of: Callable[[Point], Look]) -> None:
-        self._look_of = look_of
-        self._sprites: dict[tuple[int, int], Sprite] = {}
+        self._sprite_of = lru_cache(_MOST_TURNED)(lambda x, y: Sprite(look_of((x / FINENESS, y / FINENESS))))
 
     def draw(self, target: pygame.Surface, start: Point, end: Point) -> None:
         """Draw it with its (0, 0) at `start`, for the vector from there to `end`, pixel coordinates."""
         way = (round((end[0] - start[0]) * FINENESS), round((end[1] - start[1]) * FINENESS))
-        if way not in self._sprites:
-            if len(self._sprites) == _MOST_TURNED:
-                del self._sprites[next(iter(self._sprites))]
-            self._sprites[way] = Sprite(self._look_of((way[0] / FINENESS, way[1] / FINENESS)))
-        self._sprites[way].draw(target, *start)
+        self._sprite_of(*way).draw(target, *start)
 
 
 class Label:

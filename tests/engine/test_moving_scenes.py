@@ -1,41 +1,19 @@
 """Whatever moves in a closed scene, however it is commanded: no ball escapes, sinks in, or stops without a reason."""
 
 from collections import Counter
-from dataclasses import replace
-from unittest import mock
 
 import numpy as np
-import stability_case
 from conftest import soak_count
 from moving_scenes import command_at_random, moving_scene, start
+from stability_case import new_world
 
-from bounce_env import Ball, Bumper, Flipper, Paddle, Scene, Wall
-from bounce_env.engine import world as engine
+from bounce_env import Scene, Wall
 from bounce_env.engine.layout import BUDGET, CRUSHED, OK
 from bounce_env.engine.overlap import gaps
 from bounce_env.engine.world import World
 
 SECONDS = 20.0
 EVENTS = 20_000  # in one call
-ALL = Scene(
-    ball=Ball(radius=0.1),
-    max_speed=300.0,
-    elements=(
-        Wall((0, 0), (1, 0)),
-        Bumper((1, 1), 0.1),
-        Flipper((0, 2), 1.0, radius=0.1, rest_angle=0.0, active_angle=1.0, up_speed=1.0, down_speed=1.0),
-        Paddle((0, 0), (1, 0), half_width=0.1, radius=0.1, max_speed=1.0),
-        Wall((0, 0), (1, 0), draggable=True),
-    ),
-)
-
-
-def new_world(scene: Scene, balls: int) -> World:
-    """A world of the scene in the kernel that has all features of moving scenes: one kernel for all of a size."""
-    pack = engine.pack
-    general = replace(ALL, ball=scene.ball)
-    with mock.patch.object(engine, "pack", lambda scenes: pack([*scenes, general])):
-        return World(scene, balls)
 
 
 def is_clear(world: World) -> bool:
@@ -64,7 +42,7 @@ def test_moving_scenes() -> None:
     for seed in range(soak_count(150, 100_000)):
         rng = np.random.default_rng(seed)
         scene = moving_scene(rng)
-        world = new_world(scene, int(rng.integers(1, 6)))
+        world = new_world(scene, balls=int(rng.integers(1, 6)))
         if not start(rng, world, len(world._state.balls[0])):
             counts["no room"] += 1
             continue
@@ -103,7 +81,7 @@ def test_points_between_walls() -> None:
             gravity=(0.0, -float(rng.choice([0.0, 1.0, 10.0]))), rest_speed=float(rng.choice([0.0, 0.02])),
             elements=(lid, *sides, piston),
         )  # fmt: skip
-        world = stability_case.new_world(scene)
+        world = new_world(scene)
         angle = rng.uniform(0.0, 2.0 * np.pi)
         world.reset(position=rng.uniform((0.1, 0.6), (0.9, 0.9)), velocity=(np.cos(angle), np.sin(angle)))
         rises = rng.uniform(-1.0, 1.0, 20)
@@ -128,7 +106,7 @@ def test_pieces_and_snapshots_change_no_bit() -> None:
     for seed in range(soak_count(40, 2000)):
         rng = np.random.default_rng([seed, 1])
         scene, count = moving_scene(rng), int(rng.integers(1, 6))
-        whole, pieces = new_world(scene, count), new_world(scene, count)
+        whole, pieces = new_world(scene, balls=count), new_world(scene, balls=count)
         if not start(rng, whole, count):
             continue
         pieces.restore(whole.snapshot())
@@ -142,7 +120,7 @@ def test_pieces_and_snapshots_change_no_bit() -> None:
             if BUDGET in whole.status:
                 break
             for _ in range(4):
-                other = new_world(scene, count)
+                other = new_world(scene, balls=count)
                 other.restore(pieces.snapshot())
                 pieces = other
                 rows.append(pieces.advance(seconds / 4, ledger=True, max_events=EVENTS))

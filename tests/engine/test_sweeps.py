@@ -4,6 +4,8 @@ The samples are taken in extended precision, and only here: the engine itself ne
 """
 
 import math
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from conftest import soak_count
@@ -32,7 +34,7 @@ def gap(t, ball, angle, spin, drift, back, front, reach):
     return np.hypot(px - along * ux, py - along * uy) - np.longdouble(reach)
 
 
-def sweep(rng):
+def start(rng):
     """A ball near a capsule, and how both move; None where they overlap."""
     front = 10.0 ** rng.uniform(-1.5, 0.0)
     reach = front * 10.0 ** rng.uniform(-2.0, 0.0)
@@ -59,50 +61,59 @@ def check(found, horizon, gap_at, size, label):
         assert gap_at(after).min() < 1e-9 * size, label
 
 
-def test_turning_capsules() -> None:
-    """Soak: 10^5 flippers at up to 200 rad/s."""
+class Sweep(NamedTuple):
+    """A ball, something `length` long that moves at up to `speed`, and both ways to its surface `reach` away."""
+
+    ball: tuple[float, ...]
+    length: float
+    reach: float
+    speed: float
+    horizon: float
+    gap_at: Callable[[np.ndarray], np.ndarray]
+    found: Callable[[float], float]  # by the engine, from what counts as touching
+
+
+def hunt(draw: Callable[[np.random.Generator], Sweep]) -> None:
+    """Soak: 10^5 sweeps."""
     hits = 0
     count = soak_count(1500, 100_000)
     for seed in range(count):
-        rng = np.random.default_rng(seed)
-        ball, angle, front, reach = sweep(rng)
-        spin = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-1.0, math.log10(200.0)))
-        horizon = float(rng.uniform(0.1, 3.0) / abs(spin))
-        at = lambda t: gap(t, ball, angle, spin, (0.0, 0.0), 0.0, front, reach)  # noqa: B023, E731
-        if at(np.longdouble(0)) < 1e-6 * front:
+        sweep = draw(np.random.default_rng(seed))
+        if sweep.gap_at(np.longdouble(0)) < 1e-6 * sweep.length:
             continue
-        size = 3.0 * (front + reach) + math.hypot(*ball[2:4]) * horizon + math.hypot(*ball[4:]) * horizon**2
-        x, y, vx, vy, gx, gy = ball
-        found = turning_time(
-            x, y, vx, vy, gx, gy, math.cos(angle), math.sin(angle), front, reach, spin, 2.0**-48 * size, horizon
-        )
-        check(found, horizon, at, size, seed)
+        size = 3.0 * (sweep.length + sweep.reach) + (math.hypot(*sweep.ball[2:4]) + sweep.speed) * sweep.horizon
+        size += math.hypot(*sweep.ball[4:]) * sweep.horizon**2
+        found = sweep.found(2.0**-48 * size)
+        check(found, sweep.horizon, sweep.gap_at, size, seed)
         hits += found < math.inf
     assert 0.1 * count < hits < 0.9 * count
 
 
-def test_sliding_capsules() -> None:
-    """Soak: 10^5 paddles at up to 100 m/s."""
-    hits = 0
-    count = soak_count(1500, 100_000)
-    for seed in range(count):
-        rng = np.random.default_rng(seed)
-        ball, angle, front, reach = sweep(rng)
-        ux, uy = math.cos(angle), math.sin(angle)
-        speed = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-2.0, 2.0))
-        drift, back = (speed * ux, speed * uy), -front * float(rng.uniform(0.0, 1.0))
-        horizon = float(rng.uniform(0.5, 3.0) * front / abs(speed))
-        at = lambda t: gap(t, ball, angle, 0.0, drift, back, front, reach)  # noqa: B023, E731
-        if at(np.longdouble(0)) < 1e-6 * front:
-            continue
-        size = 3.0 * (front + reach) + (math.hypot(*ball[2:4]) + abs(speed)) * horizon
-        size += math.hypot(*ball[4:]) * horizon**2
-        x, y, vx, vy, gx, gy = ball
-        vx, vy = vx - drift[0], vy - drift[1]
-        found = capsule_time(x, y, vx, vy, gx, gy, ux, uy, back, front, reach, 2.0**-48 * size, horizon)
-        check(found, horizon, at, size, seed)
-        hits += found < math.inf
-    assert 0.1 * count < hits < 0.9 * count
+def turning_capsule(rng):
+    ball, angle, front, reach = start(rng)
+    spin = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-1.0, math.log10(200.0)))
+    horizon = float(rng.uniform(0.1, 3.0) / abs(spin))
+    core = (math.cos(angle), math.sin(angle), front, reach, spin)
+    return Sweep(
+        ball, front, reach, 0.0, horizon,
+        lambda t: gap(t, ball, angle, spin, (0.0, 0.0), 0.0, front, reach),
+        lambda slack: turning_time(*ball, *core, slack, horizon),
+    )  # fmt: skip
+
+
+def sliding_capsule(rng):
+    ball, angle, front, reach = start(rng)
+    ux, uy = math.cos(angle), math.sin(angle)
+    speed = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-2.0, 2.0))
+    drift, back = (speed * ux, speed * uy), -front * float(rng.uniform(0.0, 1.0))
+    horizon = float(rng.uniform(0.5, 3.0) * front / abs(speed))
+    x, y, vx, vy, gx, gy = ball
+    seen = (x, y, vx - drift[0], vy - drift[1], gx, gy)
+    return Sweep(
+        ball, front, reach, abs(speed), horizon,
+        lambda t: gap(t, ball, angle, 0.0, drift, back, front, reach),
+        lambda slack: capsule_time(*seen, ux, uy, back, front, reach, slack, horizon),
+    )  # fmt: skip
 
 
 def wall_gap(t, ball, ends, speeds, reach):
@@ -115,30 +126,36 @@ def wall_gap(t, ball, ends, speeds, reach):
     return np.hypot(px - share * dx, py - share * dy) - np.longdouble(reach)
 
 
+def stretching_wall(rng):
+    ball, angle, length, reach = start(rng)
+    ends = np.array([(0.0, 0.0), (length * math.cos(angle), length * math.sin(angle))])
+    fastest = float(min(100.0, 200.0 * length) * 10.0 ** rng.uniform(-3.0, 0.0))
+    speeds = rng.uniform(-1.0, 1.0, (2, 2)) * fastest
+    (ex, ey), (dx, dy) = (speeds[1] - speeds[0]).tolist(), ends[1].tolist()
+    horizon = float(rng.uniform(0.1, 3.0) * length / fastest)
+    # As by the stop of a wall that may get no shorter: it keeps a twentieth of its length.
+    nearest = min(max(-(dx * ex + dy * ey) / (ex * ex + ey * ey), 0.0), horizon)
+    if math.hypot(dx + ex * nearest, dy + ey * nearest) < 0.05 * length:
+        horizon = 0.9 * nearest
+    x, y, vx, vy, gx, gy = ball
+    seen = (x, y, vx - float(speeds[0, 0]), vy - float(speeds[0, 1]), gx, gy)
+    return Sweep(
+        ball, length, reach, 4.0 * fastest, horizon,
+        lambda t: wall_gap(t, ball, ends, speeds, reach),
+        lambda slack: stretching_time(*seen, dx, dy, ex, ey, reach, 0, slack, horizon),
+    )  # fmt: skip
+
+
+def test_turning_capsules() -> None:
+    """Flippers at up to 200 rad/s."""
+    hunt(turning_capsule)
+
+
+def test_sliding_capsules() -> None:
+    """Paddles at up to 100 m/s."""
+    hunt(sliding_capsule)
+
+
 def test_stretching_walls() -> None:
-    """Soak: 10^5 walls whose ends are dragged at up to 100 m/s, and turn at up to 200 rad/s."""
-    hits = 0
-    count = soak_count(1500, 100_000)
-    for seed in range(count):
-        rng = np.random.default_rng(seed)
-        ball, angle, length, reach = sweep(rng)
-        ends = np.array([(0.0, 0.0), (length * math.cos(angle), length * math.sin(angle))])
-        fastest = min(100.0, 200.0 * length) * 10.0 ** rng.uniform(-3.0, 0.0)
-        speeds = rng.uniform(-1.0, 1.0, (2, 2)) * fastest
-        (ex, ey), (dx, dy) = speeds[1] - speeds[0], ends[1]
-        horizon = float(rng.uniform(0.1, 3.0) * length / fastest)
-        # As by the stop of a wall that may get no shorter: it keeps a twentieth of its length.
-        nearest = min(max(-(dx * ex + dy * ey) / (ex * ex + ey * ey), 0.0), horizon)
-        if math.hypot(dx + ex * nearest, dy + ey * nearest) < 0.05 * length:
-            horizon = 0.9 * nearest
-        at = lambda t: wall_gap(t, ball, ends, speeds, reach)  # noqa: B023, E731
-        if at(np.longdouble(0)) < 1e-6 * length:
-            continue
-        size = 3.0 * (length + reach) + (math.hypot(*ball[2:4]) + 4.0 * fastest) * horizon
-        size += math.hypot(*ball[4:]) * horizon**2
-        x, y, vx, vy, gx, gy = ball
-        vx, vy = vx - speeds[0, 0], vy - speeds[0, 1]
-        found = stretching_time(x, y, vx, vy, gx, gy, dx, dy, ex, ey, reach, 0, 2.0**-48 * size, horizon)
-        check(found, horizon, at, size, seed)
-        hits += found < math.inf
-    assert 0.1 * count < hits < 0.9 * count
+    """Walls whose ends are dragged at up to 100 m/s, and turn at up to 200 rad/s."""
+    hunt(stretching_wall)

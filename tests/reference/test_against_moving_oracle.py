@@ -13,9 +13,9 @@ import pytest
 from conftest import soak_count
 from moving_oracle import MovingOracle
 from mpmath import mpf
+from stability_case import new_world
 
 from bounce_env.engine.overlap import apart, cleared, cores_at_start
-from bounce_env.engine.world import World
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Wall
 
 SECONDS = 2.0
@@ -84,7 +84,7 @@ def starts_of(rng, scene, count):
 
 
 def engine_rows(scene, places, speeds, commands):
-    world = World(scene, balls=len(places))
+    world = new_world(scene, balls=len(places))
     world.reset(position=places, velocity=speeds)
     pages, now = [], 0.0
     for time, name, value in commands:

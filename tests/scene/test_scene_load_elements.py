@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from bounce_env.scene import Arc, Bumper, Field, Paddle, Scene, SceneError, Sensor, Wall, load_scene
+from bounce_env.scene import Arc, Bumper, Field, Flipper, Paddle, Scene, SceneError, Sensor, Wall, load_scene
 
 POINT = "two numbers [x, y], each from -1e+09 to 1e+09"
 POINTS = "at least 3 points [x, y], each number from -1e+09 to 1e+09"
@@ -42,80 +42,59 @@ def problems(tmp_path, monkeypatch):
     return lines
 
 
+WRITTEN = [
+    (
+        """type = "arc"\ncenter = [1, 2]\nradius = 3\nstart_angle = 0.5\nend_angle = 3\nname = "arch"
+        b = 0.5\nf = 0.25\nkick = 2\nkick_threshold = 1\ncooldown = 0.125""",
+        Arc((1, 2), 3, 0.5, 3, b=0.5, f=0.25, kick=2, kick_threshold=1, cooldown=0.125, name="arch"),
+    ),
+    (
+        """type = "arc"\ncenter = [1, 2]\nradius = 1\nstart_angle = 0\nend_angle = 6.283185307179586""",
+        Arc((1, 2), 1, 0, 6.283185307179586),
+    ),
+    (
+        """type = "field"\npoints = [[0, 0], [1, 0], [0.5, 2]]\nacceleration = [0.5, -3]\nname = "wind" """,
+        Field(((0, 0), (1, 0), (0.5, 2)), (0.5, -3), name="wind"),
+    ),
+    (
+        """type = "sensor"\ncenter = [2, 2]\nradius = 0.25\ndrain = true\nname = "hole" """,
+        Sensor(center=(2, 2), radius=0.25, drain=True, name="hole"),
+    ),
+    (
+        """type = "wall"\nstart = [0, 0]\nend = [1, 0]\none_way = true\ncooldown = 0.5""",
+        Wall((0, 0), (1, 0), one_way=True, cooldown=0.5),
+    ),
+    (
+        """type = "wall"\nstart = [0, 1]\nend = [1, 1]\ndraggable = true
+        min_length = 0.25\nreach = [[-1, 0], [2, 3]]""",
+        Wall((0, 1), (1, 1), draggable=True, min_length=0.25, reach=((-1, 0), (2, 3))),
+    ),
+    (
+        """type = "bumper"\ncenter = [5, 5]\nradius = 1\ncooldown = 0.5""",
+        Bumper((5, 5), 1, cooldown=0.5),
+    ),
+    (
+        """type = "bumper"\ncenter = [5, 5]\nradius = 1\nrail_end = [7, 5]\nspeed = 2""",
+        Bumper((5, 5), 1, rail_end=(7, 5), speed=2),
+    ),
+    (
+        """type = "paddle"\nrail_start = [1, 0]\nrail_end = [4, 0]\nhalf_width = 0.5\nradius = 0.125
+        max_speed = 3\ncooldown = 1""",
+        Paddle((1, 0), (4, 0), half_width=0.5, radius=0.125, max_speed=3, cooldown=1),
+    ),
+    (
+        """type = "flipper"\npivot = [0, 0]\nlength = 1\nradius = 0.125\nrest_angle = -0.5\nactive_angle = 0.5
+        up_speed = 2\ndown_speed = 1""",
+        Flipper((0, 0), 1, radius=0.125, rest_angle=-0.5, active_angle=0.5, up_speed=2, down_speed=1),
+    ),
+]
+
+
 def test_a_file_gives_the_elements_that_it_says(tmp_path):
     path = tmp_path / "table.toml"
-    path.write_text(
-        """
-        rest_speed = 0.02
-        drag = 0.999
-        max_speed = 5
-        [[elements]]
-        type = "arc"
-        center = [1, 2]
-        radius = 3
-        start_angle = 0.5
-        end_angle = 3
-        b = 0.5
-        f = 0.25
-        kick = 2
-        kick_threshold = 1
-        cooldown = 0.125
-        name = "arch"
-        [[elements]]
-        type = "arc"
-        center = [1, 2]
-        radius = 1
-        start_angle = 0
-        end_angle = 6.283185307179586
-        [[elements]]
-        type = "field"
-        points = [[0, 0], [1, 0], [0.5, 2]]
-        acceleration = [0.5, -3]
-        name = "wind"
-        [[elements]]
-        type = "sensor"
-        center = [2, 2]
-        radius = 0.25
-        drain = true
-        name = "hole"
-        [[elements]]
-        type = "wall"
-        start = [0, 0]
-        end = [1, 0]
-        one_way = true
-        cooldown = 0.5
-        [[elements]]
-        type = "wall"
-        start = [0, 1]
-        end = [1, 1]
-        draggable = true
-        min_length = 0.25
-        reach = [[-1, 0], [2, 3]]
-        [[elements]]
-        type = "bumper"
-        center = [5, 5]
-        radius = 1
-        cooldown = 0.5
-        [[elements]]
-        type = "paddle"
-        rail_start = [1, 0]
-        rail_end = [4, 0]
-        half_width = 0.5
-        radius = 0.125
-        max_speed = 3
-        cooldown = 1
-        """
-    )
-    arch, ring, *_ = elements = (
-        Arc((1, 2), 3, 0.5, 3, b=0.5, f=0.25, kick=2, kick_threshold=1, cooldown=0.125, name="arch"),
-        Arc((1, 2), 1, 0, 6.283185307179586),
-        Field(((0, 0), (1, 0), (0.5, 2)), (0.5, -3), name="wind"),
-        Sensor(center=(2, 2), radius=0.25, drain=True, name="hole"),
-        Wall((0, 0), (1, 0), one_way=True, cooldown=0.5),
-        Wall((0, 1), (1, 1), draggable=True, min_length=0.25, reach=((-1, 0), (2, 3))),
-        Bumper((5, 5), 1, cooldown=0.5),
-        Paddle((1, 0), (4, 0), half_width=0.5, radius=0.125, max_speed=3, cooldown=1),
-    )
+    texts = [f"[[elements]]\n{text}" for text, _ in WRITTEN]
+    path.write_text("\n".join(["rest_speed = 0.02", "drag = 0.999", "max_speed = 5", *texts]))
+    arch, ring, *_ = elements = tuple(element for _, element in WRITTEN)
     assert load_scene(path) == Scene(rest_speed=0.02, drag=0.999, max_speed=5, elements=elements)
     assert (arch.closed, ring.closed) == (False, True)
 

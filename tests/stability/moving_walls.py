@@ -3,7 +3,7 @@
 import math
 
 from moving_paddles import DOWN, FREE, NEAR, R, scene
-from stability_case import ULP, Case, at, between, count, going, of_row, when
+from stability_case import ULP, Case, Expect, at, between, count, going, of_row, when
 
 from bounce_env.scene import Ball, Wall
 
@@ -28,6 +28,16 @@ _SIN, _COS = 0.5, math.sqrt(0.75)
 _SLOPE = Wall((-2 * _COS, -2 * _SIN), (2 * _COS, 2 * _SIN), draggable=True, b=0.0, name="w")
 _SHUT = Wall((1, -1), (1, 1), b=0.5, name="wall")
 _TIED = Wall((0, 0), (2, 0), draggable=True, b=0.5, name="w")
+
+
+def stopped(seconds: float, *ends: tuple[float, float, float, float]) -> tuple[Expect, ...]:
+    """When the wall stops, and of each of its ends where it is then and how fast it goes on: x, y, vx, vy."""
+    found = [when("w stop", seconds, 0.0)]
+    for n, end in enumerate(ends):
+        found += [
+            of_row("w stop", name, value, 0.0, n) for name, value in zip(("x", "y", "vx1", "vy1"), end, strict=True)
+        ]
+    return tuple(found)
 
 
 def _carried(radius: float) -> Case:
@@ -172,12 +182,7 @@ WALLS = [
         position=(0.0, 1.0),
         script=(drag((0.5, 0.0), (-0.5, 0.0)), 4.0),
         rows="w stop, w stop",
-        expect=(
-            when("w stop", 3.5, 0.0),
-            of_row("w stop", "x", -0.25, 0.0),
-            of_row("w stop", "x", 0.25, 0.0, n=1),
-            of_row("w stop", "vx1", 0.0, 0.0, n=1),
-        ),
+        expect=stopped(3.5, (-0.25, 0.0, 0.0, 0.0), (0.25, 0.0, 0.0, 0.0)),
     ),
     Case(
         name="an end comes to the border of its box",
@@ -186,13 +191,7 @@ WALLS = [
         position=(0.0, -2.0),
         script=(drag((0.0, 0.0), (1.0, 0.5)), 2.0),
         rows="w stop, w stop",
-        expect=(
-            when("w stop", 1.0, 0.0),
-            of_row("w stop", "x", 3.0, 0.0, n=1),
-            of_row("w stop", "y", 0.5, 0.0, n=1),
-            of_row("w stop", "vx1", 0.0, 0.0, n=1),
-            of_row("w stop", "vy1", 0.5, 0.0, n=1),
-        ),
+        expect=stopped(1.0, (-2.0, 0.0, 0.0, 0.0), (3.0, 0.5, 0.0, 0.5)),
     ),
     Case(
         name="an end at the border is sent beyond it",
@@ -201,7 +200,7 @@ WALLS = [
         position=(0.0, -2.0),
         script=(drag((-1.0, 0.5), (1.0, 0.5)), 8.0),
         rows="w stop, w stop",
-        expect=(when("w stop", 6.0, 0.0), of_row("w stop", "x", -2.0, 0.0), of_row("w stop", "y", 3.0, 0.0)),
+        expect=stopped(6.0, (-2.0, 3.0, 0.0, 0.0), (2.0, 3.0, 0.0, 0.0)),
     ),
     Case(
         name="slope that is lifted along its normal",

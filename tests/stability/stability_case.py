@@ -171,13 +171,13 @@ def everything(point: bool) -> Scene:
     return Scene(ball=ball, rest_speed=0.25, drag=0.5, max_speed=100, elements=_ALL)
 
 
-def new_world(scene: Scene, *, lean: bool = False) -> World:
+def new_world(scene: Scene, *, balls: int = 1, lean: bool = False) -> World:
     """A world of the scene, in the kernel that has every feature, or in the scene's own.
 
     There is one kernel for each set of features, and it takes long to compile. With the one that has them all, the
     whole suite needs one for discs and one for points; a soak runs it in the lean ones, too.
     """
-    return World(scene) if lean else _general(lambda: World(scene))
+    return World(scene, balls) if lean else _general(lambda: World(scene, balls))
 
 
 def _general(act: Callable[[], Any]) -> Any:

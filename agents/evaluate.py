@@ -3,19 +3,20 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import tyro
 
-from agents.baselines import Player
 from agents.command import JsonObject, Refused, check_range, run, say
 from agents.files import write_text
+from agents.look_ahead import LookAhead, act
 from agents.players import named
 from agents.results import Episodes, report, statistics, table
 from agents.runs import versions
-from agents.task import HELD_OUT, Task
+from agents.task import HELD_OUT, Player, Task
 
 
 def check_ends(task: Task) -> None:
@@ -24,7 +25,7 @@ def check_ends(task: Task) -> None:
         raise Refused("env_kwargs: time_limit = null: must be a number of seconds, for evaluation needs an end")
 
 
-def play(task: Task, player: Player, episodes: int) -> Episodes:
+def play(task: Task, player: Player | LookAhead, episodes: int) -> Episodes:
     """The held-out episodes, each to its end: episode k is the first one of the seed HELD_OUT + k.
 
     So every player meets the same launches, and no episode counts because it ended early. Raises Refused where there is
@@ -42,7 +43,7 @@ def play(task: Task, player: Player, episodes: int) -> Episodes:
     )
     playing = np.ones(episodes, np.bool_)
     while playing.any():
-        actions[playing] = player(observations[playing])
+        actions[playing] = act(player, observations[playing], partial(envs.unwrapped.clone_state, playing))
         observations, _, terminated, truncated, info = envs.step(actions)
         ended = playing & (terminated | truncated)
         if ended.any():
@@ -66,7 +67,7 @@ class EvaluateOptions:
     """See `evaluate`."""
 
     player: Annotated[str, tyro.conf.Positional]
-    """A run folder (runs/...) or the name of a baseline: random, follow, predictor."""
+    """A run folder (runs/...) or the name of a baseline of the environment, such as random or nothing."""
     episodes: int = 500
     """Number of whole episodes, from the seed 10000 on."""
     env_id: str | None = None

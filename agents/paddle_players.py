@@ -1,23 +1,19 @@
-"""Players that learn nothing: the opponents that a trained agent has to beat, at the paddle's full speed."""
+"""Players of the paddle game that learn nothing: they go where they want to be at the paddle's full speed."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Self
 
-import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
 from agents.command import Refused
-from agents.task import Task
+from agents.task import Player, Task
 from bounce_env.games.episode import FPS
 from bounce_env.games.paddle import REFERENCE_SPEED, field_of
-from bounce_env.scene import Paddle, Scene, Wall, load_scene
+from bounce_env.scene import Paddle, Scene, Wall
 
 Floats = npt.NDArray[np.float64]
-Player = Callable[[npt.NDArray[np.float32]], npt.NDArray[Any]]
-"""From observations (n, size) to actions: (n, 1) float32, or (n,) whole numbers where the actions are discrete."""
-
 MAX_BOUNCES = 64
 """A ball that has bounced so often without landing never does."""
 
@@ -151,8 +147,7 @@ class Mover:
 
     def __init__(self, task: Task, target: Callable[[Table, npt.NDArray[np.float32]], Floats]) -> None:
         kwargs = task.resolved_kwargs
-        scene = kwargs["scene"]
-        self.table = Table.of(scene if isinstance(scene, Scene) else load_scene(scene))
+        self.table = Table.of(task.scene)
         self.reach = self.table.speed * kwargs["frame_skip"] / FPS  # m that the paddle can move in one step
         self.discrete = kwargs["action"] == "discrete"
         self.target = target
@@ -173,20 +168,3 @@ def follow(task: Task) -> Player:
 def predictor(task: Task) -> Player:
     """Go to where the ball will land."""
     return Mover(task, lambda table, observations: landing(table, *table.ball(observations)))
-
-
-def random(task: Task) -> Player:
-    """Any action, each as likely; the same ones for each new player."""
-    space = task.action_space
-    generator = np.random.default_rng(0)
-
-    def act(observations: npt.NDArray[np.float32]) -> npt.NDArray[Any]:
-        if isinstance(space, gym.spaces.Discrete):
-            return generator.integers(space.n, size=len(observations))
-        return generator.uniform(space.low, space.high, (len(observations), *space.shape)).astype(np.float32)
-
-    return act
-
-
-BASELINES: dict[str, Callable[[Task], Player]] = {"random": random, "follow": follow, "predictor": predictor}
-"""By name."""

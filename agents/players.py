@@ -7,10 +7,11 @@ from typing import Any
 import torch
 from stable_baselines3 import PPO
 
-from agents.baselines import BASELINES, Player
+from agents.baselines import BASELINES
 from agents.command import Refused
+from agents.look_ahead import LookAhead
 from agents.runs import open_run
-from agents.task import Task
+from agents.task import Player, Task
 
 DEFAULT_ENV_ID = "Bounce/Paddle-v0"
 
@@ -25,17 +26,20 @@ def trained(model: PPO, *, sampled: bool = False) -> Player:
     return lambda observations: model.predict(observations, deterministic=not sampled)[0]
 
 
-def named(name: str, env_id: str | None, env_kwargs: Mapping[str, Any] | None) -> tuple[Task, dict[str, Player]]:
+def named(
+    name: str, env_id: str | None, env_kwargs: Mapping[str, Any] | None
+) -> tuple[Task, dict[str, Player | LookAhead]]:
     """What is played, and who plays it: `name` is a baseline or a run folder, which gives two players.
 
     env_id, env_kwargs: None for what the run was trained on. Raises Refused for a name that is neither, and where the
     trained agent cannot play what is asked.
     """
-    if name in BASELINES:
+    known = BASELINES.get(env_id or DEFAULT_ENV_ID, {})
+    if name in known:
         task = Task(env_id or DEFAULT_ENV_ID, env_kwargs or {})
-        return task, {name: BASELINES[name](task)}
+        return task, {name: known[name](task)}
     if not Path(name).is_dir():
-        raise Refused(f"{name!r}: must be a run folder, or one of {', '.join(BASELINES)}")
+        raise Refused(f"{name!r}: must be a run folder, or, for {env_id or DEFAULT_ENV_ID}, one of {', '.join(known)}")
     run = open_run(Path(name))
     task = Task(
         run.task.env_id if env_id is None else env_id, run.task.env_kwargs if env_kwargs is None else env_kwargs

@@ -11,11 +11,11 @@ import numpy.typing as npt
 import tyro
 from PIL import Image
 
-from agents.baselines import Player
 from agents.command import JsonObject, check_range, run, say
 from agents.files import replacing
-from agents.players import BASELINES, named
-from agents.task import HELD_OUT, Task
+from agents.look_ahead import LookAhead, act
+from agents.players import named
+from agents.task import HELD_OUT, Player, Task
 
 Frame = npt.NDArray[np.uint8]  # (height, width, 3)
 
@@ -23,14 +23,14 @@ GIF_COLOURS = 64
 GIF_STRIDE = 2  # every second frame at half the size: a GIF is for a page, the MP4 for looking closely
 
 
-def frames(task: Task, player: Player, seed: int) -> Iterator[Frame]:
+def frames(task: Task, player: Player | LookAhead, seed: int) -> Iterator[Frame]:
     """The frames of the first episode of `seed`, from its launch to its end."""
     env = task.single(render_mode="rgb_array")
     observation, _ = env.reset(seed=seed)
     ended = False
     yield np.asarray(env.render())
     while not ended:
-        action: Any = player(observation[None])[0]
+        action: Any = act(player, observation[None], env.unwrapped.clone_state)[0]
         observation, _, terminated, truncated, _ = env.step(action)
         ended = terminated or truncated
         yield np.asarray(env.render())
@@ -71,7 +71,7 @@ def write_gif(path: Path, pictures: list[Image.Image], fps: float) -> None:
         )
 
 
-def record_episode(task: Task, player: Player, folder: Path, seed: int = HELD_OUT) -> list[Path]:
+def record_episode(task: Task, player: Player | LookAhead, folder: Path, seed: int = HELD_OUT) -> list[Path]:
     """Write rollout.mp4 and rollout.gif of the first episode of `seed`, at the speed of play."""
     folder.mkdir(parents=True, exist_ok=True)
     fps = task.single().metadata["render_fps"]
@@ -107,7 +107,7 @@ def record(options: RecordOptions) -> int:
     check_range("seed", options.seed, 0)
     task, players = named(options.player, options.env_id, options.env_kwargs)
     player = list(players.values())[-1 if options.sampled else 0]
-    default = Path("runs") / options.player if options.player in BASELINES else Path(options.player)
+    default = Path(options.player) if Path(options.player).is_dir() else Path("runs") / options.player
     for path in record_episode(task, player, options.output or default, options.seed):
         say(str(path))
     return 0

@@ -1,16 +1,22 @@
 """What is played: an environment id and its keyword arguments."""
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
 from gymnasium.envs.registration import load_env_creator
 
 from agents.command import Refused
 from bounce_env.registration import ENTRIES
 from bounce_env.sb3 import BounceVecEnv
+from bounce_env.scene import Scene, load_scene
+
+Player = Callable[[npt.NDArray[np.float32]], npt.NDArray[Any]]
+"""From observations (n, size) to actions (n, *shape of an action)."""
 
 ENV_IDS = tuple(entry.id for entry in ENTRIES)
 
@@ -52,6 +58,12 @@ class Task:
         spec = gym.spec(self.env_id)
         parameters = inspect.signature(load_env_creator(str(spec.entry_point))).parameters
         return {name: p.default for name, p in parameters.items()} | spec.kwargs | dict(self.env_kwargs)
+
+    @property
+    def scene(self) -> Scene:
+        """What is played on."""
+        scene = self.resolved_kwargs["scene"]
+        return scene if isinstance(scene, Scene) else load_scene(scene)
 
     @property
     def observation_space(self) -> gym.Space[Any]:

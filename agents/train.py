@@ -7,7 +7,7 @@ from pathlib import Path
 
 import torch
 
-from agents.baselines import BASELINES
+from agents.baselines import quick_baselines
 from agents.command import JsonObject, Refused, check_range, run, say
 from agents.config import LARGEST_SEED, load_config
 from agents.curve import Curve, draw
@@ -79,7 +79,7 @@ def train(options: TrainOptions) -> int:
         return 128 + stop.signal
     say(f"trained for {seconds:.0f} s")
 
-    players = {name: baseline(run.task) for name, baseline in BASELINES.items()}
+    players = {name: baseline(run.task) for name, baseline in quick_baselines(run.task.env_id).items()}
     players |= {"trained": trained(model), "trained_sampled": trained(model, sampled=True)}
     say(f"playing {options.episodes} held-out episodes with each player ...")
     played = {name: play(run.task, player, options.episodes) for name, player in players.items()}

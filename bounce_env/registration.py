@@ -18,6 +18,11 @@ class Entry:
 
 ENTRIES = (
     Entry(
+        "Bounce/Pinball-v0",
+        entry_point="bounce_env.env:PinballEnv",
+        vector_entry_point="bounce_env.vector:PinballVectorEnv",
+    ),
+    Entry(
         "Bounce/Paddle-v0",
         entry_point="bounce_env.env:PaddleEnv",
         vector_entry_point="bounce_env.vector:PaddleVectorEnv",

@@ -112,8 +112,8 @@ class BounceVecEnv(VecEnv):
         return [None] * self.num_envs if frames is None else list(frames)
 
     def _rows(self, info: dict[str, Any]) -> list[dict[str, Any]]:
-        scores = info["score"].tolist()
-        return [{"score": score, "ball": 0} for score in scores]
+        rows = zip(info["score"].tolist(), info["ball"].tolist(), strict=True)
+        return [{"score": score, "ball": ball} for score, ball in rows]
 
     def _option_rows(self) -> dict[str, Any]:
         """The options of `set_options`, one dict per world, as the batch takes them: one row per world."""

@@ -1,8 +1,7 @@
 """The vector environments: many worlds of one game in one batch, without a Python object per world."""
 
 from collections.abc import Sequence
-from os import PathLike
-from typing import Any, Literal
+from typing import Any, ClassVar
 
 import gymnasium as gym
 import numpy as np
@@ -11,14 +10,17 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from bounce_env.env import PaddleEnv, action_space, observation_space, picture_of, world_seed
+from bounce_env.env import PaddleEnv, PinballEnv, action_space, observation_space, picture_of, world_seed
 from bounce_env.games import episode
-from bounce_env.games.batch import Batch, Game
-from bounce_env.games.paddle import PaddleGame, PaddleOptions
+from bounce_env.games.batch import Batch
+from bounce_env.games.clone import States
+from bounce_env.games.game import Game
+from bounce_env.games.options import Options, PaddleOptions, PinballOptions
+from bounce_env.games.paddle import PaddleGame
+from bounce_env.games.pinball import PinballGame
 from bounce_env.games.start import start_rows
 from bounce_env.render import Renderer
 from bounce_env.render.projection import Projection
-from bounce_env.scene import Scene
 
 Observations = npt.NDArray[np.float32]
 Flags = npt.NDArray[np.bool_]
@@ -42,17 +44,21 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
+    game_type: ClassVar[type[Game]]
+    options_type: ClassVar[type[Options]]
+
     def __init__(
         self,
-        game: Game,
-        num_envs: int,
+        num_envs: int = 1,
         *,
-        num_threads: int,
-        autoreset_mode: AutoresetMode | str,
-        copy: bool,
-        render_mode: str | None,
-        width: int | None,
-        height: int | None,
+        max_episode_steps: int | None = None,
+        num_threads: int = 1,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        copy: bool = True,
+        render_mode: str | None = None,
+        width: int | None = None,
+        height: int | None = None,
+        **options: Any,
     ) -> None:
         for name, value in (("num_envs", num_envs), ("num_threads", num_threads)):
             if not _whole(value):
@@ -61,6 +67,11 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             raise ValueError(f"copy = {copy!r}: must be True or False")
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode = {render_mode!r}: must be one of {[None, *self.metadata['render_modes']]}")
+        # -1 is `gym.make`'s word for no limit.
+        steps = None if max_episode_steps == -1 else max_episode_steps
+        if steps is not None and not _whole(steps):
+            raise ValueError(f"max_episode_steps = {steps!r}: must be None, -1 or a whole number >= 1")
+        game = self.game_type(self.options_type(**options)).with_step_limit(steps)
         Projection.fit(game.scenes[0].bounds, width, height)  # a bad size is told now, not at the first frame
         mode = _autoreset_mode(autoreset_mode)
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds), "autoreset_mode": mode}
@@ -96,7 +107,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         one row per world. Raises ValueError, and changes nothing, for what is not allowed.
         """
         options = dict(options or {})
-        mask = self._reset_mask(options.pop("reset_mask", None))
+        mask = self._mask_of("options['reset_mask']", options.pop("reset_mask", None))
         start = start_rows(self._batch.game, self.num_envs, options)
         self._seed_worlds(seed, mask)
         self._batch.reset(mask, start)
@@ -132,17 +143,38 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             self._renderer = Renderer(self._batch.game.scenes[0], *self._size)
         return tuple(self._renderer.frame(picture_of(self._batch, w)) for w in range(self.num_envs))
 
+    def clone_state(self, mask: Flags | None = None) -> States:
+        """What the worlds of `mask` (bool, one per world; None for all) follow from; see the single env's.
+
+        Raises ResetNeeded before the first reset.
+        """
+        if not self._begun:
+            raise gym.error.ResetNeeded("call reset() before clone_state()")
+        return self._batch.clone(self._mask_of("mask", mask))
+
+    def restore_state(self, states: States, mask: Flags | None = None) -> Observations:
+        """Let the worlds of `mask` go on from cloned states, one row each; returns all worlds' observations.
+
+        Raises ValueError, and changes nothing, for states of another game, scene or options, or of another number.
+        """
+        rows = self._mask_of("mask", mask)
+        self._batch.restore(states, rows)
+        self._seeded |= rows
+        self._begun = bool(self._seeded.all())
+        self._ended[rows] = self._batch.episodes["end"][rows] != episode.RUNNING
+        return self._observations()
+
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
         self._batch.close()
 
-    def _reset_mask(self, mask: Any) -> Flags:
+    def _mask_of(self, name: str, mask: Any) -> Flags:
         if mask is None:
             return np.ones(self.num_envs, np.bool_)
         if not (isinstance(mask, np.ndarray) and mask.dtype == np.bool_ and mask.shape == (self.num_envs,)):
-            raise ValueError(f"options['reset_mask'] = {mask!r}: must be a bool array of shape ({self.num_envs},)")
+            raise ValueError(f"{name} = {mask!r}: must be a bool array of shape ({self.num_envs},)")
         if not mask.any():
-            raise ValueError("options['reset_mask']: must be True for at least one world")
+            raise ValueError(f"{name}: must be True for at least one world")
         return mask.copy()  # it is handed out in info
 
     def _seed_worlds(self, seed: int | Sequence[int | None] | None, mask: Flags) -> None:
@@ -170,7 +202,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         return {
             "score": np.where(mask, self._batch.episodes["score"], 0.0),
             "_score": mask,
-            "ball": np.zeros(self.num_envs, np.int64),
+            "ball": np.where(mask, self._batch.episodes["ball"], 0),
             "_ball": mask,
         }
 
@@ -184,7 +216,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             return
         r = self._batch.results
         told |= {"score": r.ended["score"].copy(), "_score": ended}
-        told |= {"ball": np.zeros(self.num_envs, np.int64), "_ball": ended}
+        told |= {"ball": r.ended["ball"].copy(), "_ball": ended}
         observations = np.full(self.num_envs, None, object)
         for w in np.flatnonzero(ended).tolist():
             observations[w] = r.final_observations[w].copy()
@@ -204,42 +236,11 @@ def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:
 
 class PaddleVectorEnv(BounceVectorEnv):
     __doc__ = PaddleEnv.__doc__
+    game_type = PaddleGame
+    options_type = PaddleOptions
 
-    def __init__(
-        self,
-        num_envs: int = 1,
-        *,
-        max_episode_steps: int | None = None,
-        num_threads: int = 1,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        copy: bool = True,
-        scene: str | PathLike[str] | Scene = "paddle",
-        action: Literal["continuous", "discrete"] = "continuous",
-        frame_skip: int = 2,
-        repeat_action_probability: float = 0.0,
-        time_limit: float | None = 60.0,
-        render_mode: str | None = None,
-        width: int | None = None,
-        height: int | None = None,
-    ) -> None:
-        options = PaddleOptions(
-            scene=scene,
-            action=action,
-            frame_skip=frame_skip,
-            repeat_action_probability=repeat_action_probability,
-            time_limit=time_limit,
-        )
-        # -1 is `gym.make`'s word for no limit.
-        steps = None if max_episode_steps == -1 else max_episode_steps
-        if steps is not None and not _whole(steps):
-            raise ValueError(f"max_episode_steps = {steps!r}: must be None, -1 or a whole number >= 1")
-        super().__init__(
-            PaddleGame(options).with_step_limit(steps),
-            num_envs,
-            num_threads=num_threads,
-            autoreset_mode=autoreset_mode,
-            copy=copy,
-            render_mode=render_mode,
-            width=width,
-            height=height,
-        )
+
+class PinballVectorEnv(BounceVectorEnv):
+    __doc__ = PinballEnv.__doc__
+    game_type = PinballGame
+    options_type = PinballOptions

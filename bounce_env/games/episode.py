@@ -1,6 +1,5 @@
 """What every game keeps for each world beside the engine's state, and what it says of an episode."""
 
-import math
 from typing import Any, NamedTuple
 
 import numba
@@ -10,7 +9,7 @@ from numba.experimental import structref
 
 from bounce_env.engine.jit import Record, borrow, function, kernel
 from bounce_env.engine.layout import State, Tables, record
-from bounce_env.games.streams import EPISODES, bits
+from bounce_env.games.streams import EPISODES, STICKY_ACTIONS, bits, uniform
 
 Array = npt.NDArray[Any]
 
@@ -19,12 +18,11 @@ EPISODE = record(
     seed="u8",  # of the present episode
     frames="i8",  # 1 / fps each, since the episode began
     score="f8",
-    touches="i8",  # hits of the parts that the agent moves
-    last_action="f8",  # what the parts do: repeated when actions are sticky
+    ball="i8",  # which one is played, from 0 on
     end="i8",  # how the episode has ended
 )  # fmt: skip
 
-BOOKS = record(seconds="f8", score="f8", touches="i8", end="i8", bounces="i8", speed_capped="i8")
+BOOKS = record(seconds="f8", score="f8", ball="i8", end="i8", bounces="i8", speed_capped="i8")
 
 # How an episode ends; END_REASONS names them in info["end_reason"].
 RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET = 0, 1, 2, 3
@@ -48,18 +46,24 @@ class Results(NamedTuple):
     truncated: Array  # (worlds,) bool
     final_observations: Array  # (worlds, size) float32: of episodes that ended in this step, when reset in the same
     ended: Array  # (worlds,) BOOKS of the episodes that ended in this step
+    counted: Array  # (worlds, counters) float64: what the game has counted in them
     busy: Array  # (worlds,) uint64: the kernel's list of worlds in which something happens
 
 
-class _Parts(NamedTuple):
-    """All that a game's kernels work on."""
+class Worlds(NamedTuple):
+    """All that a game's kernels work on, beside its rules; first axis worlds."""
 
     state: State
     tables: Tables
-    rules: Any
     episodes: Array  # (worlds,) EPISODE
+    memory: Any  # (worlds,) of the game's own record: what its rules remember; None: nothing
+    held: Array  # (worlds, controls) float64: the action in force, which a sticky one repeats
+    counters: Array  # (worlds, counters) float64: what the game counts in an episode
     start: Array  # (worlds, 4) x, y, vx, vy of a launch in place of the seed's; NaN for the seed's own
     results: Results
+
+
+_FIELDS = ("rules", *Worlds._fields)
 
 
 @structref.register
@@ -75,22 +79,45 @@ class Handle(structref.StructRefProxy):  # type: ignore[misc]
         return structref.StructRefProxy.__new__(cls, *parts)
 
 
-structref.define_proxy(Handle, _HandleType, list(_Parts._fields))
+structref.define_proxy(Handle, _HandleType, list(_FIELDS))
+
+
+class _Interpreted(NamedTuple):
+    """What a `Handle` is where the compiler is switched off."""
+
+    rules: Any
+    state: State
+    tables: Tables
+    episodes: Array
+    memory: Any
+    held: Array
+    counters: Array
+    start: Array
+    results: Results
 
 
 @kernel
-def _bind_compiled(parts: _Parts) -> Any:
-    return Handle(parts.state, parts.tables, parts.rules, parts.episodes, parts.start, parts.results)
+def _bind_compiled(rules: Any, worlds: Worlds) -> Any:
+    return Handle(
+        rules,
+        worlds.state,
+        worlds.tables,
+        worlds.episodes,
+        worlds.memory,
+        worlds.held,
+        worlds.counters,
+        worlds.start,
+        worlds.results,
+    )
 
 
-def bind(state: State, tables: Tables, rules: Any, episodes: Array, start: Array, results: Results) -> Any:
+def bind(rules: Any, worlds: Worlds) -> Any:
     """A handle to all that a game's kernels work on; it keeps the arrays alive."""
-    parts = _Parts(state, tables, rules, episodes, start, results)
-    return parts if numba.config.DISABLE_JIT else _bind_compiled(parts)
+    return _Interpreted(rules, *worlds) if numba.config.DISABLE_JIT else _bind_compiled(rules, worlds)
 
 
-def new_results(worlds: int, size: int) -> Results:
-    """Zeroed results for observations of `size` numbers."""
+def new_results(worlds: int, size: int, counters: int) -> Results:
+    """Zeroed results for observations of `size` numbers and so many counters."""
     return Results(
         observations=np.zeros((worlds, size), np.float32),
         rewards=np.zeros(worlds),
@@ -98,6 +125,7 @@ def new_results(worlds: int, size: int) -> Results:
         truncated=np.zeros(worlds, np.bool_),
         final_observations=np.zeros((worlds, size), np.float32),
         ended=np.zeros(worlds, BOOKS),
+        counted=np.zeros((worlds, counters)),
         busy=np.zeros(worlds, np.uint64),
     )
 
@@ -112,41 +140,50 @@ def borrow_results(results: Results) -> Results:
         borrow(results.truncated),
         borrow(results.final_observations),
         borrow(results.ended),
+        borrow(results.counted),
         borrow(results.busy),
     )
 
 
 @function
-def all_finite(numbers: Array) -> bool:
-    """Whether there is neither NaN nor infinity in (n,) floats."""
-    # Counted, not asked one by one: so the processor looks at several at a time.
-    others = 0
-    for number in numbers:
-        others += 0 if abs(number) < math.inf else 1
-    return others == 0
-
-
-@function
-def begin_episode(episode: Record) -> None:
-    """Give the next episode of a world its seed and clear its books."""
+def begin_episode(worlds: Worlds, w: int) -> Record:
+    """Give the next episode of world `w` its seed and clear its books."""
+    episode = worlds.episodes[w]
     episode.seed = bits(episode.world_seed, EPISODES, episode.episodes)
     episode.episodes += 1
-    episode.frames, episode.touches, episode.end = 0, 0, RUNNING
-    episode.score, episode.last_action = 0.0, 0.0
+    episode.frames, episode.ball, episode.end, episode.score = 0, 0, RUNNING, 0.0
+    for j in range(worlds.held.shape[1]):
+        worlds.held[w, j] = 0.0
+    for j in range(worlds.counters.shape[1]):
+        worlds.counters[w, j] = 0.0
+    return episode
 
 
 @function
-def close_books(results: Results, episode: Record, world: Record, w: int) -> None:
+def hold_action(worlds: Worlds, actions: Array, w: int, repeat: float) -> None:
+    """Let the action of this step be in force, or, with the probability `repeat` per frame, go on with the last one."""
+    episode = worlds.episodes[w]
+    if repeat == 0.0 or uniform(episode.seed, STICKY_ACTIONS, episode.frames) >= repeat:
+        for j in range(worlds.held.shape[1]):
+            worlds.held[w, j] = actions[w, j]
+
+
+@function
+def close_books(worlds: Worlds, w: int) -> None:
     """Note how the episode of world `w` ended, before anything of it is reset."""
-    ended = results.ended[w]
+    ended, episode, world = worlds.results.ended[w], worlds.episodes[w], worlds.state.worlds[w]
     ended.seconds, ended.score = episode.frames / FPS, episode.score
-    ended.touches, ended.end = episode.touches, episode.end
+    ended.ball, ended.end = episode.ball, episode.end
     ended.bounces, ended.speed_capped = world.bounces, world.speed_capped
+    for j in range(worlds.counters.shape[1]):
+        worlds.results.counted[w, j] = worlds.counters[w, j]
 
 
 @function
 def open_books(results: Results, w: int) -> None:
     """Forget how an episode of world `w` ended."""
     ended = results.ended[w]
-    ended.seconds, ended.score, ended.touches, ended.end = 0.0, 0.0, 0, RUNNING
+    ended.seconds, ended.score, ended.ball, ended.end = 0.0, 0.0, 0, RUNNING
     ended.bounces, ended.speed_capped = 0, 0
+    for j in range(results.counted.shape[1]):
+        results.counted[w, j] = 0.0

@@ -1,41 +1,37 @@
 """The rules of the paddle game: keep the ball in play, send it into the bumpers."""
 
 import math
-from collections.abc import Callable
-from os import PathLike
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import ConfigDict, Field, InstanceOf, StrictInt
-from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.command import command, command_unwatched
 from bounce_env.engine.disturb import place
-from bounce_env.engine.jit import Table, borrow, function, kernel
-from bounce_env.engine.layout import OUT, Array, State, Tables, borrow_state, borrow_tables, record
+from bounce_env.engine.jit import Table, borrow, function
+from bounce_env.engine.layout import OUT, Array, State, Tables, record
 from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
-from bounce_env.engine.pack import direction, pack
+from bounce_env.engine.pack import direction
 from bounce_env.engine.parts import offset_at
 from bounce_env.engine.trig import sin_cos
 from bounce_env.engine.view import ball_now
+from bounce_env.games.actions import Continuous, Discrete
 from bounce_env.games.episode import (
     DRAINED,
     FPS,
     MAX_EVENTS,
-    NEXT_STEP,
     OUT_OF_BUDGET,
     RUNNING,
-    SAME_STEP,
     TIME_LIMIT,
-    Results,
-    all_finite,
+    Worlds,
     begin_episode,
-    borrow_results,
-    close_books,
+    hold_action,
     open_books,
 )
-from bounce_env.games.streams import LAUNCHES, STICKY_ACTIONS, uniform
-from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall, load_scene
+from bounce_env.games.game import Game, frame_limit
+from bounce_env.games.options import PaddleOptions
+from bounce_env.games.rules import is_game
+from bounce_env.games.streams import LAUNCHES, uniform
+from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall
 
 # The launch: place as shares of the field, so that it fits the scenes of users, too.
 LAUNCH_X = (0.2, 0.8)
@@ -55,15 +51,8 @@ FIELD = record(
 )  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True, config=ConfigDict(arbitrary_types_allowed=True))
-class PaddleOptions:
-    """What a user may choose; see the card of `bounce_env.env.PaddleEnv`. Raises ValueError for what is not allowed."""
-
-    scene: str | PathLike[str] | InstanceOf[Scene] = "paddle"
-    action: Literal["continuous", "discrete"] = "continuous"
-    frame_skip: Annotated[StrictInt, Field(ge=1, le=FPS)] = 2
-    repeat_action_probability: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] = 0.0
-    time_limit: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)] | None = 60.0
+# What is counted, in the order of `PaddleGame.counters`.
+BUMPER_POINTS, TOUCHES = 0, 1
 
 
 class Rules(NamedTuple):
@@ -117,7 +106,7 @@ def field_of(scene: Scene) -> tuple[float, float, float, float]:
     return left, below, right - left, above - below
 
 
-def new_rules(scenes: tuple[Scene, ...], options: "PaddleOptions") -> Rules:
+def new_rules(scenes: tuple[Scene, ...], options: PaddleOptions) -> Rules:
     """The rules for a batch whose worlds play `scenes`; see `field_of` for what a scene must have."""
     fields = np.zeros(len(scenes), FIELD)
     points = np.zeros((len(scenes), max(len(s.elements) for s in scenes)))
@@ -129,9 +118,8 @@ def new_rules(scenes: tuple[Scene, ...], options: "PaddleOptions") -> Rules:
         span = direction(rail.rail_start, rail.rail_end)[2]
         fields[s] = (x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, paddle)
         points[s, : len(scene.elements)] = [POINTS * isinstance(e, Bumper) for e in scene.elements]
-    limit = math.inf if options.time_limit is None else float(round(options.time_limit * FPS))
     repeat = options.repeat_action_probability
-    return Rules(fields, points, float(FPS), options.frame_skip, limit, repeat, MAX_EVENTS)
+    return Rules(fields, points, float(FPS), options.frame_skip, frame_limit(options), repeat, MAX_EVENTS)
 
 
 def speed_bound(scene: Scene) -> float:
@@ -144,11 +132,11 @@ def speed_bound(scene: Scene) -> float:
 
 
 @function
-def observe(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, out: Array) -> None:
+def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     """Ball's place and velocity and the paddle's place, each scaled so that usual values spread over [-1, 1]."""
-    scene = state.worlds[w].scene
-    field = rules.fields[scene]
-    x, y, vx, vy = ball_now(state, tables, w, 0)
+    state = worlds.state
+    field = rules.fields[state.worlds[w].scene]
+    x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
     out[w, 0] = (x - field.x) * field.x_scale - 1.0
     out[w, 1] = (y - field.y) * field.y_scale - 1.0
     out[w, 2] = vx * (1.0 / REFERENCE_SPEED)
@@ -156,7 +144,13 @@ def observe(state: State, tables: Tables, rules: Rules, episodes: Array, w: int,
     # The product may exceed the ends of the range by its rounding.
     out[w, 4] = min(max(paddle_offset(state, state.motions, w) * field.rail_scale - 1.0, -1.0), 1.0)
     if out.shape[1] > OBSERVATION_SIZE:
-        out[w, OBSERVATION_SIZE] = episodes[w].last_action
+        out[w, OBSERVATION_SIZE] = clipped(worlds.held[w, 0])
+
+
+@function
+def clipped(action: float) -> float:
+    """The action as a share of the paddle's greatest speed."""
+    return min(max(action, -1.0), 1.0)
 
 
 @function
@@ -168,9 +162,9 @@ def paddle_offset(state: State, motions: Table, w: int) -> float:
 
 
 @function
-def launch(state: State, tables: Tables, rules: Rules, seed: Any, w: int, start: Array) -> None:
-    """Put the ball into flight: as `start` (x, y, vx, vy) says, where that is not NaN as the episode's seed does."""
-    field = rules.fields[state.worlds[w].scene]
+def launch(rules: Rules, worlds: Worlds, seed: Any, w: int) -> None:
+    """Put the ball into flight: as `worlds.start` says, where that is NaN as the episode's seed does."""
+    field, start = rules.fields[worlds.state.worlds[w].scene], worlds.start
     x = field.x + (LAUNCH_X[0] + (LAUNCH_X[1] - LAUNCH_X[0]) * uniform(seed, LAUNCHES, 0)) * field.width
     y = field.y + LAUNCH_Y * field.height
     angle = LAUNCH_ANGLE[0] + (LAUNCH_ANGLE[1] - LAUNCH_ANGLE[0]) * uniform(seed, LAUNCHES, 1)
@@ -180,36 +174,35 @@ def launch(state: State, tables: Tables, rules: Rules, seed: Any, w: int, start:
         x, y = start[w, 0], start[w, 1]
     if not math.isnan(start[w, 2]):
         vx, vy = start[w, 2], start[w, 3]
-    place(state, tables, w, 0, x, y, vx, vy)
+    place(worlds.state, worlds.tables, w, 0, x, y, vx, vy)
 
 
 @function
-def begin(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, start: Array) -> None:
+def begin(rules: Rules, worlds: Worlds, w: int) -> None:
     """Begin the next episode of world `w`."""
-    begin_episode(episodes[w])
-    restart(state, tables, w)
-    launch(state, tables, rules, episodes[w].seed, w, start)
+    episode = begin_episode(worlds, w)
+    restart(worlds.state, worlds.tables, w)
+    launch(rules, worlds, episode.seed, w)
 
 
 @function
-def play(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, action: float) -> float:
-    """One step of world `w`: the paddle moves at `action` times its greatest speed. Returns the reward."""
-    episode = episodes[w]
+def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
+    """One step of world `w`: the paddle moves at its action times its greatest speed. Returns the reward."""
+    state, tables, episode = worlds.state, worlds.tables, worlds.episodes[w]
     clear_hits(state, w)
     resume(state, w)
     frames = 1 if rules.repeat > 0.0 else rules.frame_skip
     code = DONE
     last = episode.frames + rules.frame_skip
     while episode.frames < last:
-        if rules.repeat == 0.0 or uniform(episode.seed, STICKY_ACTIONS, episode.frames) >= rules.repeat:
-            episode.last_action = action
-        move(state, tables, state.motions, tables.parts, w, episode.last_action)
+        hold_action(worlds, actions, w, rules.repeat)
+        move(state, tables, state.motions, tables.parts, w, clipped(worlds.held[w, 0]))
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
         code = run(state, tables, w, episode.frames / rules.fps, 0.0, rules.max_events, None)
         if code != DONE or state.balls[w, 0].status == OUT:
             break
-    reward = count_points(state, rules, episode, w)
+    reward = count_points(rules, worlds, w)
     if state.balls[w, 0].status == OUT:
         episode.end = DRAINED
     elif code != DONE:
@@ -221,7 +214,7 @@ def play(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, ac
 
 
 @function
-def glide(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, action: float, results: Results) -> bool:
+def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     """The step of a world in which nothing happens; False, and nothing done that `play` would not do, where it may.
 
     The rewards and ends of `results` are expected to say already that nothing happened.
@@ -229,11 +222,13 @@ def glide(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, a
     Most steps are such. What it does is what `play` does, without the code for what does not happen: a small loop over
     these and another one over the rest run several times faster than one loop over both.
     """
-    episode, world = episodes[w], state.worlds[w]
+    state, tables, results = worlds.state, worlds.tables, worlds.results
+    episode, world = worlds.episodes[w], state.worlds[w]
     frames = episode.frames + rules.frame_skip
     if episode.end != RUNNING or frames >= rules.limit:
         return False
     until = frames / rules.fps
+    action = clipped(actions[w, 0])
     if rules.repeat > 0.0 or not steer(state, tables, tables.parts, w, action):
         return False
     if not is_calm(state.balls, state.pairs, state.motions, tables.parts, w, world.scene, until, 0.0):
@@ -242,9 +237,9 @@ def glide(state: State, tables: Tables, rules: Rules, episodes: Array, w: int, a
     # An episode that ended in the last step has been followed by a new one, of which this is the first step.
     if episode.frames == 0:
         open_books(results, w)
-    episode.last_action, episode.frames = action, frames
+    worlds.held[w, 0], episode.frames = action, frames
     world.time_hi, world.time_lo = until, 0.0
-    observe(state, tables, rules, episodes, w, results.observations)
+    observe(rules, worlds, w, results.observations)
     return True
 
 
@@ -267,111 +262,39 @@ def move(state: State, tables: Tables, motions: Any, parts: Any, w: int, action:
 
 
 @function
-def count_points(state: State, rules: Rules, episode: Any, w: int) -> float:
+def count_points(rules: Rules, worlds: Worlds, w: int) -> float:
     """Points for what was struck in this step."""
-    reward = 0.0
+    state, reward = worlds.state, 0.0
     if not state.worlds[w].dirty:
         return reward
     scene = state.worlds[w].scene
     for element in range(state.hits.shape[1]):
         reward += rules.points[scene, element] * state.hits[w, element]
-    episode.touches += state.hits[w, rules.fields[scene].paddle]
+    worlds.counters[w, BUMPER_POINTS] += reward
+    worlds.counters[w, TOUCHES] += state.hits[w, rules.fields[scene].paddle]
     return reward
 
 
-@kernel
-def reset_worlds(handle: Any, mask: Array) -> None:
-    """Begin an episode in every world that `mask` names, launched as `handle.start` says."""
-    state, tables, episodes = borrow_state(handle.state), borrow_tables(handle.tables), borrow(handle.episodes)
-    rules, results, start = borrow_rules(handle.rules), borrow_results(handle.results), borrow(handle.start)
-    for w in range(mask.shape[0]):
-        if mask[w]:
-            begin(state, tables, rules, episodes, w, start)
-            observe(state, tables, rules, episodes, w, results.observations)
-            results.terminated[w] = False
-            results.truncated[w] = False
-            results.rewards[w] = 0.0
+is_game(Rules, begin=begin, play=play, glide=glide, observe=observe, borrow_rules=borrow_rules)
 
 
-@kernel
-def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: int) -> int:
-    """One step of worlds `first` to `last` - 1, with the autoreset mode's resets; returns how many episodes ended.
-
-    actions: (worlds,) float64, clipped to [-1, 1]; where any of them is NaN or infinite nothing is done and -1
-    returned. A world whose episode has ended is reset in place of a step
-    (NEXT_STEP), was reset at its end (SAME_STEP), or must have been reset by the caller (DISABLED).
-    """
-    state, tables, episodes = borrow_state(handle.state), borrow_tables(handle.tables), borrow(handle.episodes)
-    rules, results, start = borrow_rules(handle.rules), borrow_results(handle.results), borrow(handle.start)
-    if not all_finite(actions):
-        return -1
-    results.rewards[first:last] = 0.0
-    results.terminated[first:last] = False
-    results.truncated[first:last] = False
-    busy = first
-    # Of an unsigned index Numba does not ask whether it counts from the end.
-    for w in range(np.uint64(first), np.uint64(last)):
-        if not glide(state, tables, rules, episodes, w, min(max(actions[w], -1.0), 1.0), results):
-            results.busy[busy] = w
-            busy += 1
-    ended = 0
-    for i in range(first, busy):
-        w = results.busy[i]
-        if autoreset == NEXT_STEP and episodes[w].end != RUNNING:
-            begin(state, tables, rules, episodes, w, start)
-            observe(state, tables, rules, episodes, w, results.observations)
-            open_books(results, w)
-            continue
-        results.rewards[w] = play(state, tables, rules, episodes, w, min(max(actions[w], -1.0), 1.0))
-        if results.ended[w].end != RUNNING:
-            open_books(results, w)
-        end = episodes[w].end
-        results.terminated[w] = end == DRAINED
-        results.truncated[w] = end not in (DRAINED, RUNNING)
-        observe(state, tables, rules, episodes, w, results.observations)
-        if end != RUNNING:
-            ended += 1
-            close_books(results, episodes[w], state.worlds[w], w)
-            if autoreset == SAME_STEP:
-                for j in range(results.observations.shape[1]):
-                    results.final_observations[w, j] = results.observations[w, j]
-                begin(state, tables, rules, episodes, w, start)
-                observe(state, tables, rules, episodes, w, results.observations)
-    return ended
-
-
-class PaddleGame:
+class PaddleGame(Game):
     """The paddle game for a batch: scene, tables and rules, and what an agent sees and does.
 
     Raises ValueError where the scene cannot be played (`field_of`), SceneError where it cannot be read.
     """
 
-    reset_worlds: ClassVar[Callable[..., None]] = staticmethod(reset_worlds)
-    step_worlds: ClassVar[Callable[..., int]] = staticmethod(step_worlds)
+    counters = ("points_bumpers", "touches")
 
     def __init__(self, options: PaddleOptions) -> None:
-        scene = options.scene if isinstance(options.scene, Scene) else load_scene(options.scene)
-        self.scenes: tuple[Scene, ...] = (scene,)
+        super().__init__(options)
         self.rules = new_rules(self.scenes, options)
-        self.tables = pack(self.scenes)
-        x, y, width, height = field_of(scene)
+        x, y, width, height = field_of(self.scenes[0])
         self.field = (x, y, x + width, y + height)
-        self.step_seconds = options.frame_skip / FPS
-        self.discrete_actions = 3 if options.action == "discrete" else None
-        speed = speed_bound(scene) / REFERENCE_SPEED
+        self.actions = Discrete((-1.0, 0.0, 1.0)) if options.action == "discrete" else Continuous(1)
+        speed = speed_bound(self.scenes[0]) / REFERENCE_SPEED
         bounds = [1.0, 1.0, speed, speed, 1.0]
         if options.repeat_action_probability > 0.0:
             bounds.append(1.0)
         self.observation_high = np.array(bounds, np.float32)
-
-    def with_step_limit(self, steps: int | None) -> "PaddleGame":
-        """The same game, truncated after `steps` steps if that comes before the time limit."""
-        if steps is not None:
-            limit = min(self.rules.limit, float(steps * self.rules.frame_skip))
-            self.rules = self.rules._replace(limit=limit)
-        return self
-
-    @staticmethod
-    def speeds(actions: Array) -> Array:
-        """Speeds of the paddle, as a share of its greatest, for discrete actions: left, stay, right."""
-        return actions.astype(np.float64) - 1.0
+        self.observation_low = -self.observation_high

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.overlap import cleared, cores_at_start
-from bounce_env.games.batch import Game
+from bounce_env.games.game import Game
 
 ALLOWED = ("position", "velocity")
 

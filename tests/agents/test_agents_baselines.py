@@ -6,14 +6,17 @@ import numpy as np
 import pytest
 from conftest import soak_count
 
-from agents.baselines import BASELINES, Mover, Table, landing
+from agents.baselines import BASELINES
 from agents.command import Refused
 from agents.evaluate import play
+from agents.paddle_players import Mover, Table, landing
 from agents.results import estimate
 from agents.task import Task
 from bounce_env import Ball, Bumper, Paddle, Scene, Sensor, Wall, World, load_scene
 
 TASK = Task("Bounce/Paddle-v0")
+PLAYERS = BASELINES[TASK.env_id]
+KNOWING = ("random", "follow", "predictor")
 
 
 def empty_field(*, b: float, f: float, gravity: float, width: float = 1.0) -> Scene:
@@ -100,7 +103,7 @@ def test_a_mover_goes_at_full_speed_and_stops_where_it_wants_to_be(kwargs: dict[
 def test_the_more_a_baseline_knows_the_higher_it_scores() -> None:
     for kwargs in ({}, {"action": "discrete"}):
         task = Task(TASK.env_id, kwargs)
-        levels = [estimate(play(task, BASELINES[name](task), soak_count(300, 3000)).scores) for name in BASELINES]
+        levels = [estimate(play(task, PLAYERS[name](task), soak_count(300, 3000)).scores) for name in KNOWING]
         random, follow, predictor = levels
         assert random.hi < follow.lo
         assert follow.hi < predictor.lo

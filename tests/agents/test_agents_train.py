@@ -93,7 +93,7 @@ def test_summary(run_folder: Path) -> None:
         assert set(result) == {"mean", "lo", "hi", "n"}
         assert result["lo"] <= result["mean"] <= result["hi"]
         assert result["n"] == 12
-    follow = estimate(play(Task(ENV_ID), BASELINES["follow"](Task(ENV_ID)), 12).scores)
+    follow = estimate(play(Task(ENV_ID), BASELINES[ENV_ID]["follow"](Task(ENV_ID)), 12).scores)
     assert (results["follow"]["mean"], results["follow"]["hi"]) == (follow.mean, follow.hi)
 
 
@@ -218,7 +218,7 @@ def test_what_cannot_be_written_whole_leaves_the_old_file(tmp_path: Path) -> Non
 def test_an_episode_counts_once_and_whole() -> None:
     """Against single environments, played one after the other."""
     task, n = Task(ENV_ID, {"time_limit": 8.0}), 40
-    player = BASELINES["predictor"](task)
+    player = BASELINES[ENV_ID]["predictor"](task)
     played = play(task, player, n)
     env = task.single()
     for k in range(n):
@@ -309,4 +309,4 @@ def test_record_a_baseline(tmp_path: Path) -> None:
     assert record(options) == 0
     assert {path.name for path in (tmp_path / "film").iterdir()} == {"rollout.mp4", "rollout.gif"}
     task = Task(ENV_ID, kwargs)
-    check_film(tmp_path / "film", task, BASELINES["follow"](task), 3)
+    check_film(tmp_path / "film", task, BASELINES[ENV_ID]["follow"](task), 3)

@@ -10,12 +10,16 @@ from gymnasium.vector import SyncVectorEnv, VectorEnv
 
 from bounce_env.registration import ENTRIES
 
-PADDLE = "Bounce/Paddle-v0"
+PADDLE, PINBALL = "Bounce/Paddle-v0", "Bounce/Pinball-v0"
 MODES = ("NEXT_STEP", "SAME_STEP", "DISABLED")
 KINDS = [
     {"action": action, "repeat_action_probability": p} for action, p in product(("continuous", "discrete"), (0.0, 0.25))
 ]
-VARIANTS = [(entry.id, kwargs) for entry in ENTRIES for kwargs in KINDS]
+PINBALL_KINDS = [
+    {"action": action, "repeat_action_probability": p} for action, p in product(("discrete", "buttons"), (0.0, 0.25))
+]
+KINDS_OF = {PADDLE: KINDS, PINBALL: PINBALL_KINDS}
+VARIANTS = [(entry.id, kwargs) for entry in ENTRIES for kwargs in KINDS_OF[entry.id]]
 
 
 def name(value: object) -> str | None:
@@ -30,17 +34,17 @@ def make_env() -> gym.Env:
     return gym.make(PADDLE, time_limit=1.0)
 
 
-def make_vec(num_envs: int, mode: str = "NEXT_STEP", **kwargs: Any) -> VectorEnv:
+def make_vec(num_envs: int, mode: str = "NEXT_STEP", env_id: str = PADDLE, **kwargs: Any) -> VectorEnv:
     """Our own vector environment."""
     return gym.make_vec(
-        PADDLE, num_envs=num_envs, vectorization_mode="vector_entry_point", autoreset_mode=mode, **kwargs
+        env_id, num_envs=num_envs, vectorization_mode="vector_entry_point", autoreset_mode=mode, **kwargs
     )
 
 
-def make_sync(num_envs: int, mode: str, **kwargs: Any) -> SyncVectorEnv:
+def make_sync(num_envs: int, mode: str, env_id: str = PADDLE, **kwargs: Any) -> SyncVectorEnv:
     """Gymnasium's vector environment over our single ones: the reference for ours."""
     mode = gym.vector.AutoresetMode[mode]
-    return SyncVectorEnv([lambda: gym.make(PADDLE, **kwargs)] * num_envs, autoreset_mode=mode)
+    return SyncVectorEnv([lambda: gym.make(env_id, **kwargs)] * num_envs, autoreset_mode=mode)
 
 
 def scripted(space: gym.Space, steps: int, seed: int = 0) -> npt.NDArray[Any]:
@@ -49,6 +53,8 @@ def scripted(space: gym.Space, steps: int, seed: int = 0) -> npt.NDArray[Any]:
     shape = (steps // 5 + 1, *space.shape)
     if isinstance(space, gym.spaces.MultiDiscrete):
         choices = rng.integers(0, space.nvec, shape)
+    elif isinstance(space, gym.spaces.MultiBinary) or space.dtype == np.int8:
+        choices = rng.integers(0, 2, shape, np.int8)
     else:
         choices = rng.uniform(-1.0, 1.0, shape).astype(np.float32)
     return np.repeat(choices, 5, axis=0)[:steps]

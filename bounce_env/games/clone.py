@@ -1,0 +1,42 @@
+"""Copies of all that worlds are, to go on from: what a player needs that looks ahead."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.engine.layout import Array
+
+
+@dataclass(frozen=True, eq=False)
+class States:
+    """The states of some worlds, one row each; `states[rows]` selects and repeats rows as NumPy does.
+
+    A batch of the same game, scene and options goes on from them to the same bits.
+    """
+
+    game: str
+    arrays: tuple[Array, ...]
+
+    def __len__(self) -> int:
+        return len(self.arrays[0])
+
+    def __getitem__(self, rows: slice | npt.NDArray[np.generic]) -> "States":
+        return States(self.game, tuple(array[rows] for array in self.arrays))
+
+
+def clone_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_]) -> States:
+    """The rows of `mask` of every array, copied."""
+    return States(game, tuple(array[mask] for array in arrays))
+
+
+def restore_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_], states: States) -> None:
+    """Write states into the rows of `mask`; raises ValueError, before anything is written, where they do not fit."""
+    if not isinstance(states, States):
+        raise ValueError(f"state = {states!r}: must be what clone_state() returned")
+    if states.game != game:
+        raise ValueError("state of another game, scene or options: must be restored into an equal environment")
+    if len(states) != mask.sum():
+        raise ValueError(f"state of {len(states)} worlds: must be of {mask.sum()}")
+    for array, rows in zip(arrays, states.arrays, strict=True):
+        array[mask] = rows

@@ -1,0 +1,53 @@
+"""What every game is to a batch of worlds."""
+
+import math
+from typing import Any, ClassVar, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.engine.layout import Tables
+from bounce_env.engine.pack import pack
+from bounce_env.games.actions import Actions
+from bounce_env.games.episode import FPS
+from bounce_env.games.options import Options
+from bounce_env.scene import Scene, load_scene
+
+
+class Game:
+    """A game with what its user chose: scenes, tables and rules, and what an agent sees and does.
+
+    Raises SceneError where the scene cannot be read; a game raises ValueError where it cannot be played.
+
+    options: what its user chose. rules: of a type that is a game (`games.rules`).
+    observation_low, observation_high: bounds of what is observed.
+    field: x_min, y_min, x_max, y_max [m] of where a ball may be launched by the options of a reset.
+    """
+
+    counters: ClassVar[tuple[str, ...]]  # what is told at an episode's end of what the game has counted
+    memory: ClassVar[np.dtype[Any] | None] = None  # what its rules remember of a world
+
+    actions: Actions
+    rules: Any
+    field: tuple[float, float, float, float]
+    observation_low: npt.NDArray[np.float32]
+    observation_high: npt.NDArray[np.float32]
+
+    def __init__(self, options: Options) -> None:
+        self.options = options
+        scene = options.scene if isinstance(options.scene, Scene) else load_scene(options.scene)
+        self.scenes: tuple[Scene, ...] = (scene,)
+        self.tables: Tables = pack(self.scenes)
+        self.step_seconds = options.frame_skip / FPS
+
+    def with_step_limit(self, steps: int | None) -> Self:
+        """The same game, truncated after `steps` steps if that comes before the time limit."""
+        if steps is not None:
+            limit = min(self.rules.limit, float(steps * self.rules.frame_skip))
+            self.rules = self.rules._replace(limit=limit)
+        return self
+
+
+def frame_limit(options: Options) -> float:
+    """Frames after which an episode is truncated; infinite for never."""
+    return math.inf if options.time_limit is None else float(round(options.time_limit * FPS))

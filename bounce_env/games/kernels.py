@@ -1,0 +1,134 @@
+"""The kernels that step a batch of worlds of any game, and reset them."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from bounce_env.engine.jit import borrow, function, kernel
+from bounce_env.engine.layout import Array, borrow_state, borrow_tables
+from bounce_env.games.episode import (
+    DRAINED,
+    NEXT_STEP,
+    RUNNING,
+    SAME_STEP,
+    Worlds,
+    borrow_results,
+    close_books,
+    open_books,
+)
+from bounce_env.games.rules import of_game
+
+
+@of_game
+def begin(rules: Any, worlds: Worlds, w: int) -> None:
+    """See `games.rules`."""
+
+
+@of_game
+def play(rules: Any, worlds: Worlds, actions: Array, w: int) -> float:
+    """See `games.rules`."""
+    raise NotImplementedError
+
+
+@of_game
+def glide(rules: Any, worlds: Worlds, actions: Array, w: int) -> bool:
+    """See `games.rules`."""
+    raise NotImplementedError
+
+
+@of_game
+def observe(rules: Any, worlds: Worlds, w: int, out: Array) -> None:
+    """See `games.rules`."""
+
+
+@of_game
+def borrow_rules(rules: Any) -> Any:
+    """See `games.rules`."""
+
+
+@function
+def _borrowed(handle: Any) -> Worlds:
+    """All that the handle holds but the rules, borrowed; see `engine.jit.borrow`."""
+    return Worlds(
+        borrow_state(handle.state),
+        borrow_tables(handle.tables),
+        borrow(handle.episodes),
+        borrow(handle.memory),
+        borrow(handle.held),
+        borrow(handle.counters),
+        borrow(handle.start),
+        borrow_results(handle.results),
+    )
+
+
+@kernel
+def reset_worlds(handle: Any, mask: Array) -> None:
+    """Begin an episode in every world that `mask` names, launched as `handle.start` says."""
+    worlds, rules = _borrowed(handle), borrow_rules(handle.rules)
+    results = worlds.results
+    for w in range(mask.shape[0]):
+        if mask[w]:
+            begin(rules, worlds, w)
+            observe(rules, worlds, w, results.observations)
+            results.terminated[w] = False
+            results.truncated[w] = False
+            results.rewards[w] = 0.0
+
+
+@kernel
+def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: int) -> int:
+    """One step of worlds `first` to `last` - 1, with the autoreset mode's resets; returns how many episodes ended.
+
+    actions: (worlds, controls) float64; where any of them is NaN or infinite nothing is done and -1 returned. A world
+    whose episode has ended is reset in place of a step (NEXT_STEP), was reset at its end (SAME_STEP), or must have been
+    reset by the caller (DISABLED).
+    """
+    worlds, rules = _borrowed(handle), borrow_rules(handle.rules)
+    results, episodes = worlds.results, worlds.episodes
+    if not _all_finite(actions):
+        return -1
+    results.rewards[first:last] = 0.0
+    results.terminated[first:last] = False
+    results.truncated[first:last] = False
+    busy = first
+    # Of an unsigned index Numba does not ask whether it counts from the end.
+    for w in range(np.uint64(first), np.uint64(last)):
+        if not glide(rules, worlds, actions, w):
+            results.busy[busy] = w
+            busy += 1
+    ended = 0
+    for i in range(first, busy):
+        w = results.busy[i]
+        if autoreset == NEXT_STEP and episodes[w].end != RUNNING:
+            begin(rules, worlds, w)
+            observe(rules, worlds, w, results.observations)
+            open_books(results, w)
+            continue
+        results.rewards[w] = play(rules, worlds, actions, w)
+        if results.ended[w].end != RUNNING:
+            open_books(results, w)
+        end = episodes[w].end
+        results.terminated[w] = end == DRAINED
+        results.truncated[w] = end not in (DRAINED, RUNNING)
+        observe(rules, worlds, w, results.observations)
+        if end != RUNNING:
+            ended += 1
+            close_books(worlds, w)
+            if autoreset == SAME_STEP:
+                for j in range(results.observations.shape[1]):
+                    results.final_observations[w, j] = results.observations[w, j]
+                begin(rules, worlds, w)
+                observe(rules, worlds, w, results.observations)
+    return ended
+
+
+@function
+def _all_finite(numbers: Array) -> bool:
+    """Whether there is neither NaN nor infinity in (n, k) floats."""
+    # Counted, not asked one by one: so the processor looks at several at a time.
+    others = 0
+    for i in range(numbers.shape[0]):
+        for j in range(numbers.shape[1]):
+            others += 0 if abs(numbers[i, j]) < math.inf else 1
+    return others == 0

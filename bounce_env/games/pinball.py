@@ -1,0 +1,554 @@
+"""The rules of the pinball game: points, lamps, balls, and what keeps a player from doing nothing for points."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bounce_env.engine.command import command
+from bounce_env.engine.disturb import disturb, place
+from bounce_env.engine.instant import since
+from bounce_env.engine.jit import Table, borrow, function
+from bounce_env.engine.layout import OUT, Array, State, record
+from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
+from bounce_env.engine.parts import offset_at
+from bounce_env.engine.view import ball_now
+from bounce_env.games.actions import Buttons, Discrete
+from bounce_env.games.episode import (
+    DRAINED,
+    FPS,
+    MAX_EVENTS,
+    OUT_OF_BUDGET,
+    RUNNING,
+    TIME_LIMIT,
+    Worlds,
+    begin_episode,
+    hold_action,
+    open_books,
+)
+from bounce_env.games.game import Game, frame_limit
+from bounce_env.games.options import PinballOptions
+from bounce_env.games.rules import is_game
+from bounce_env.games.streams import LAUNCHES, uniform
+from bounce_env.games.table import (
+    BUMPER,
+    FLIPPER,
+    IN_PLAY,
+    NOTHING,
+    SLINGSHOT,
+    TARGET,
+    Layout,
+    layout_of,
+    outline,
+)
+
+# Points, times the multiplier, which grows by 1 whenever the bank is hit, on the same ball.
+POINTS_BUMPER, POINTS_SLINGSHOT, POINTS_TARGET, POINTS_BANK = 50.0, 10.0, 250.0, 1000.0
+POINTS_ROLLOVER, POINTS_LANES = 100.0, 500.0
+HIGHEST_MULTIPLIER = 5
+FARMED = 20  # hits of bumpers and slingshots that count without a touch of a flipper in between
+
+REWARD_PER_POINT = 1e-3
+REWARD_PER_BALL = -0.5  # for every ball that is lost; the score knows nothing of it
+
+LAUNCH_SPEED = (1.45, 2.4)  # m/s
+LAUNCH_FRAMES = 3 * FPS  # after which a ball counts as in play wherever it is
+SAVE_FRAMES = 5 * FPS  # a ball that is lost so soon is given back, once
+HOLD_FRAMES = 4 * FPS  # in the flippers' zone, after which both are released until the ball leaves it
+STUCK_FRAMES = 10 * FPS  # without a hit that the rules know of: the ball is shot again
+
+# Buttons, as bits of the action's code.
+LEFT, RIGHT, NUDGE_LEFT, NUDGE_RIGHT = 1, 2, 4, 8
+NUDGE = (0.25, 0.15)  # m/s to the side and up
+NUDGE_FRAMES = FPS // 4  # after which the next one may follow
+NUDGE_COST = 1.0  # of the tilt meter, which shows 3 at a tilt
+TILT, TILT_PER_FRAME = 3.0, 0.5 / FPS
+
+REFERENCE_SPEED = 1.0  # m/s; the speed that is observed as 1
+
+# What is counted, in the order of `PinballGame.counters`.
+BY_BUMPERS, BY_SLINGSHOTS, BY_TARGETS, BY_ROLLOVERS = 0, 1, 2, 3
+BANKS, TOUCHES, FLIPS, SAVES, STUCK_FREED, HOLD_RELEASED, NUDGES, TILTS = 4, 5, 6, 7, 8, 9, 10, 11
+
+MEMORY = record(
+    lit="i8", passed="i8",  # bits: targets that are lit, rollovers that are not any more
+    multiplier="i8",
+    farmed="i8",  # hits of bumpers and slingshots since a flipper touched the ball
+    launches="i8",  # of the ball that is played
+    saved="i8",  # whether this ball has been given back
+    serving="i8",  # whether it is on its way out of the lane, or about to be
+    shot="i8", born="i8",  # frames in which it was shot and came into play
+    zone="i8",  # frame in which it came into the flippers' zone; -1 outside
+    scored="i8",  # frame of the last hit that the rules know of
+    pressed="i8",  # buttons in force
+    tilt="f8", tilted="i8",  # the tilt meter, and whether the flippers are dead for this ball
+    nudged="i8",  # frame of the last nudge
+)  # fmt: skip
+
+# `serving`: the ball is played, is to be shot, is in the lane.
+NO, DUE, SHOT = 0, 1, 2
+
+
+class Rules(NamedTuple):
+    """What the kernel needs to know of the game beside the scene."""
+
+    layout: Layout
+    fps: float
+    frame_skip: int
+    limit: float  # frames after which an episode is truncated; inf for never
+    repeat: float  # probability per frame that the last action is repeated
+    max_events: int
+    balls: int
+    nudge: int  # 1 where the table can be nudged
+
+
+@function
+def borrow_rules(rules: Rules) -> Rules:
+    """The same rules, borrowed; see `engine.jit.borrow`."""
+    layout = rules.layout
+    borrowed = Layout(
+        borrow(layout.tables),
+        borrow(layout.roles),
+        borrow(layout.lamps),
+        borrow(layout.sides),
+        borrow(layout.bumpers),
+        borrow(layout.cooldowns),
+    )
+    return Rules(
+        borrowed,
+        rules.fps,
+        rules.frame_skip,
+        rules.limit,
+        rules.repeat,
+        rules.max_events,
+        rules.balls,
+        rules.nudge,
+    )
+
+
+@function
+def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
+    """What the card of `bounce_env.env.PinballEnv` says, in its order."""
+    state, layout = worlds.state, rules.layout
+    memory, episode, world = worlds.memory[w], worlds.episodes[w], state.worlds[w]
+    scene = world.scene
+    table = layout.tables[scene]
+    x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
+    out[w, 0] = (x - table.x) * table.x_scale - 1.0
+    out[w, 1] = (y - table.y) * table.y_scale - 1.0
+    out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
+    i = observe_flippers(state, state.motions, worlds.tables.parts, layout, w, out, 4)
+    out[w, i] = (rules.balls - episode.ball) / rules.balls
+    out[w, i + 1] = save_left(memory, episode.frames) / SAVE_FRAMES
+    out[w, i + 2] = hold_timer(memory, episode.frames) / HOLD_FRAMES
+    out[w, i + 3] = memory.multiplier / HIGHEST_MULTIPLIER
+    out[w, i + 4] = min(memory.farmed, FARMED) / FARMED
+    out[w, i + 5] = (episode.frames - memory.scored) / STUCK_FRAMES
+    i += 6
+    for lamp in range(table.targets):
+        out[w, i + lamp] = (memory.lit >> lamp) & 1
+    i += table.targets
+    for lamp in range(table.rollovers):
+        out[w, i + lamp] = (memory.passed >> lamp) & 1
+    i += table.rollovers
+    for j in range(layout.bumpers.shape[1]):
+        out[w, i + j] = cooldown_left(state.cooling, world, w, layout.bumpers[scene, j]) * layout.cooldowns[scene, j]
+    i += layout.bumpers.shape[1]
+    if rules.nudge:
+        out[w, i] = 1.0 if memory.tilted else memory.tilt / TILT
+        out[w, i + 1] = max(NUDGE_FRAMES - (episode.frames - memory.nudged), 0) / NUDGE_FRAMES
+        i += 2
+    if rules.repeat > 0.0:
+        code = int(worlds.held[w, 0])
+        for bit in range(4 if rules.nudge else 2):
+            out[w, i + bit] = (code >> bit) & 1
+
+
+@function
+def observe_flippers(
+    state: State, motions: Table, parts: Table, layout: Layout, w: int, out: Array, i: int
+) -> int:  # fmt: skip
+    """How far each flipper is up, 0 to 1, from `out[w, i]` on; returns where the next number goes."""
+    if motions is None or parts is None:
+        return i
+    world = state.worlds[w]
+    for m in range(layout.sides.shape[1]):
+        if layout.sides[world.scene, m]:
+            # The quotient may exceed the ends of the range by its rounding.
+            stroke = offset_at(motions[w, m], world.time_hi, world.time_lo) / parts[world.scene, m].span
+            out[w, i] = min(max(stroke, 0.0), 1.0)
+            i += 1
+    return i
+
+
+@function
+def cooldown_left(cooling: Table, world: Any, w: int, element: int) -> float:
+    """Seconds until a bumper kicks again."""
+    if cooling is None or element < 0:
+        return 0.0
+    return max(since(cooling[w, element].hi, cooling[w, element].lo, world.time_hi, world.time_lo), 0.0)
+
+
+@function
+def save_left(memory: Any, frame: int) -> int:
+    """Frames for which a ball that is lost is given back."""
+    return 0 if memory.saved else max(SAVE_FRAMES - (frame - memory.born), 0)
+
+
+@function
+def hold_timer(memory: Any, frame: int) -> int:
+    """Frames that the ball has been in the flippers' zone, at most those after which they are released."""
+    return 0 if memory.zone < 0 else min(frame - memory.zone, HOLD_FRAMES)
+
+
+@function
+def begin(rules: Rules, worlds: Worlds, w: int) -> None:
+    """Begin the next episode of world `w`."""
+    begin_episode(worlds, w)
+    memory = worlds.memory[w]
+    restart(worlds.state, worlds.tables, w)
+    memory.passed, memory.pressed = 0, 0
+    table = rules.layout.tables[worlds.state.worlds[w].scene]
+    memory.lit = (1 << table.targets) - 1
+    new_ball(memory)
+    shoot(rules, worlds, w)
+
+
+@function
+def new_ball(memory: Any) -> None:
+    """What begins anew with each ball: lamps stay as they are."""
+    memory.multiplier, memory.farmed, memory.launches, memory.saved = 1, 0, 0, 0
+    memory.tilt, memory.tilted, memory.nudged = 0.0, 0, -NUDGE_FRAMES
+
+
+@function
+def shoot(rules: Rules, worlds: Worlds, w: int) -> None:
+    """Put the ball into the lane with the speed that its seed says, or into the game as `worlds.start` says."""
+    episode, memory, start = worlds.episodes[w], worlds.memory[w], worlds.start
+    table = rules.layout.tables[worlds.state.worlds[w].scene]
+    share = uniform(episode.seed, LAUNCHES, 16 * episode.ball + min(memory.launches, 15))
+    speed = LAUNCH_SPEED[0] + (LAUNCH_SPEED[1] - LAUNCH_SPEED[0]) * share
+    x, y, vx, vy = table.plunger_x, table.plunger_y, speed * table.up_x, speed * table.up_y
+    memory.serving = SHOT
+    if not math.isnan(start[w, 0]):
+        x, y, vx, vy = start[w, 0], start[w, 1], 0.0, 0.0
+        memory.serving = NO
+    if not math.isnan(start[w, 2]):
+        vx, vy = start[w, 2], start[w, 3]
+    memory.launches += 1
+    memory.shot, memory.born, memory.scored, memory.zone = episode.frames, episode.frames, episode.frames, -1
+    place(worlds.state, worlds.tables, w, 0, x, y, vx, vy)
+
+
+@function
+def mind_lane(rules: Rules, worlds: Worlds, w: int) -> None:
+    """Let the ball count as played once it has left the lane, or if it takes too long to do so."""
+    state, episode, memory = worlds.state, worlds.episodes[w], worlds.memory[w]
+    late = episode.frames - memory.shot >= LAUNCH_FRAMES or state.balls[w, 0].status == OUT
+    if late or crossed(state, rules.layout, w, state.worlds[w].scene):
+        memory.serving = NO
+        memory.born, memory.scored, memory.zone = episode.frames, episode.frames, -1
+
+
+@function
+def crossed(state: State, layout: Layout, w: int, scene: int) -> bool:
+    """Whether the ball has come into play in this frame."""
+    for element in range(state.hits.shape[1]):
+        if layout.roles[scene, element] == IN_PLAY and state.hits[w, element] > 0:
+            return True
+    return False
+
+
+@function
+def press(rules: Rules, worlds: Worlds, motions: Table, parts: Table, w: int, buttons: int) -> None:
+    """Let each flipper go up or down as its button says."""
+    memory, scene = worlds.memory[w], worlds.state.worlds[w].scene
+    if motions is None or parts is None:
+        return
+    for m in range(rules.layout.sides.shape[1]):
+        side = rules.layout.sides[scene, m]
+        if side:
+            part = parts[scene, m]
+            velocity = part.up_speed if buttons & side else -part.down_speed
+            command(worlds.state, worlds.tables, motions, parts, w, m, velocity)
+    pressed_now = buttons & (LEFT | RIGHT) & ~memory.pressed
+    worlds.counters[w, FLIPS] += (pressed_now & 1) + (pressed_now >> 1)
+    memory.pressed = buttons & (LEFT | RIGHT)
+
+
+@function
+def in_force(rules: Rules, worlds: Worlds, w: int, code: int) -> int:
+    """The flippers' buttons in force: none while the ball has been held for too long, or the table is tilted.
+
+    A nudge acts at once.
+    """
+    memory, frames = worlds.memory[w], worlds.episodes[w].frames
+    if rules.nudge and code & (NUDGE_LEFT | NUDGE_RIGHT):
+        nudge(worlds, w, code)
+    if memory.tilted or hold_timer(memory, frames) >= HOLD_FRAMES:
+        return 0
+    return code & (LEFT | RIGHT)
+
+
+@function
+def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
+    """One step of world `w`, frame by frame; returns the reward.
+
+    The frames in which a ball is on its way out of the lane are none of the step's: no action matters in them.
+    """
+    state, tables, episode, memory = worlds.state, worlds.tables, worlds.episodes[w], worlds.memory[w]
+    reward = 0.0
+    frames = rules.frame_skip
+    while (frames > 0 or memory.serving) and episode.end == RUNNING:
+        buttons = 0
+        if memory.serving == DUE:
+            shoot(rules, worlds, w)
+        if not memory.serving:
+            frames -= 1
+            hold_action(worlds, actions, w, rules.repeat)
+            buttons = in_force(rules, worlds, w, int(worlds.held[w, 0]))
+        press(rules, worlds, state.motions, tables.parts, w, buttons)
+        clear_hits(state, w)
+        resume(state, w)
+        episode.frames += 1
+        # From the count of frames, not by adding up: the same instant whatever the frame skip.
+        code = run(state, tables, w, episode.frames / rules.fps, 0.0, rules.max_events, None)
+        if code != DONE:
+            episode.end = OUT_OF_BUDGET
+        elif memory.serving:
+            mind_lane(rules, worlds, w)
+        else:
+            points = count_points(rules, worlds, w)
+            episode.score += points
+            reward += REWARD_PER_POINT * points
+            if state.balls[w, 0].status == OUT:
+                reward += lose_ball(rules, worlds, w)
+            else:
+                mind_time(rules, worlds, w)
+        if episode.end == RUNNING and episode.frames >= rules.limit:
+            episode.end = TIME_LIMIT
+    return reward
+
+
+@function
+def count_points(rules: Rules, worlds: Worlds, w: int) -> float:
+    """Points for what was hit in this frame, in the order of the elements; lamps and counters change with it."""
+    state, memory, episode = worlds.state, worlds.memory[w], worlds.episodes[w]
+    points = 0.0
+    if not state.worlds[w].dirty or memory.tilted:
+        return points
+    scene = state.worlds[w].scene
+    for element in range(state.hits.shape[1]):
+        role = rules.layout.roles[scene, element]
+        if state.hits[w, element] == 0 or role in (NOTHING, IN_PLAY):
+            continue
+        memory.scored = episode.frames
+        if role == FLIPPER:
+            memory.farmed = 0
+            worlds.counters[w, TOUCHES] += state.hits[w, element]
+        elif role in (BUMPER, SLINGSHOT):
+            points += score_kicks(worlds, w, role, state.hits[w, element])
+        else:
+            points += score_lamp(rules, worlds, w, scene, role, rules.layout.lamps[scene, element])
+    return points
+
+
+@function
+def score_kicks(worlds: Worlds, w: int, role: int, hits: int) -> float:
+    """Points for hits of a bumper or slingshot, as long as a flipper has touched the ball in between."""
+    memory = worlds.memory[w]
+    counted = min(hits, max(FARMED - memory.farmed, 0))
+    memory.farmed += hits
+    each = POINTS_BUMPER if role == BUMPER else POINTS_SLINGSHOT
+    points = each * memory.multiplier * counted
+    worlds.counters[w, BY_BUMPERS if role == BUMPER else BY_SLINGSHOTS] += points
+    return points
+
+
+@function
+def score_lamp(rules: Rules, worlds: Worlds, w: int, scene: int, role: int, lamp: int) -> float:
+    """Points for a target that is lit, or a rollover that was not passed yet; more for the last one of them."""
+    memory, table = worlds.memory[w], rules.layout.tables[scene]
+    bit = 1 << lamp
+    if role == TARGET:
+        if not memory.lit & bit:
+            return 0.0
+        memory.lit &= ~bit
+        points = POINTS_TARGET * memory.multiplier
+        if memory.lit == 0:
+            points += POINTS_BANK * memory.multiplier
+            memory.lit = (1 << table.targets) - 1
+            memory.multiplier = min(memory.multiplier + 1, HIGHEST_MULTIPLIER)
+            worlds.counters[w, BANKS] += 1
+        worlds.counters[w, BY_TARGETS] += points
+        return points
+    if memory.passed & bit:
+        return 0.0
+    memory.passed |= bit
+    points = POINTS_ROLLOVER * memory.multiplier
+    if memory.passed == (1 << table.rollovers) - 1:
+        points += POINTS_LANES * memory.multiplier
+        memory.passed = 0
+    worlds.counters[w, BY_ROLLOVERS] += points
+    return points
+
+
+@function
+def lose_ball(rules: Rules, worlds: Worlds, w: int) -> float:
+    """What follows when the ball has drained: it is given back, the next one follows, or the episode ends."""
+    episode, memory = worlds.episodes[w], worlds.memory[w]
+    if save_left(memory, episode.frames) > 0 and not memory.tilted:
+        memory.saved = 1
+        worlds.counters[w, SAVES] += 1
+        memory.serving = DUE
+        return 0.0
+    if episode.ball + 1 < rules.balls:
+        episode.ball += 1
+        new_ball(memory)
+        memory.serving = DUE
+    else:
+        episode.end = DRAINED
+    return REWARD_PER_BALL
+
+
+@function
+def mind_time(rules: Rules, worlds: Worlds, w: int) -> None:
+    """What happens by the clock: the flippers' zone, a ball that is stuck, the tilt meter."""
+    episode, memory = worlds.episodes[w], worlds.memory[w]
+    if not in_zone(rules, worlds, w):
+        memory.zone = -1
+    elif memory.zone < 0:
+        memory.zone = episode.frames
+    elif episode.frames - memory.zone == HOLD_FRAMES:
+        worlds.counters[w, HOLD_RELEASED] += 1
+    memory.tilt = max(memory.tilt - TILT_PER_FRAME, 0.0)
+    if episode.frames - memory.scored >= STUCK_FRAMES:
+        worlds.counters[w, STUCK_FREED] += 1
+        memory.serving = DUE
+
+
+@function
+def in_zone(rules: Rules, worlds: Worlds, w: int) -> bool:
+    """Whether the ball's centre is where a flipper may hold it."""
+    table = rules.layout.tables[worlds.state.worlds[w].scene]
+    x, y, _, _ = ball_now(worlds.state, worlds.tables, w, 0)
+    return table.zone_left <= x <= table.zone_right and y <= table.zone_top
+
+
+@function
+def nudge(worlds: Worlds, w: int, buttons: int) -> None:
+    """Shove the table, if the last time is long enough ago; too often, and it tilts."""
+    memory, episode = worlds.memory[w], worlds.episodes[w]
+    if memory.tilted or episode.frames - memory.nudged < NUDGE_FRAMES:
+        return
+    memory.nudged = episode.frames
+    worlds.counters[w, NUDGES] += 1
+    memory.tilt += NUDGE_COST
+    if memory.tilt >= TILT:
+        memory.tilted = 1
+        worlds.counters[w, TILTS] += 1
+    side = (1 if buttons & NUDGE_RIGHT else 0) - (1 if buttons & NUDGE_LEFT else 0)
+    disturb(worlds.state, worlds.tables, w, 0, 1.0, NUDGE[0] * side, NUDGE[1])
+
+
+@function
+def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
+    """The step of a world in which nothing happens: the same buttons, no event, and the clock changes nothing.
+
+    False, and nothing done, where something may. The rewards and ends of `results` are expected to say so already.
+    """
+    state, episode, memory = worlds.state, worlds.episodes[w], worlds.memory[w]
+    world = state.worlds[w]
+    frames = episode.frames + rules.frame_skip
+    if episode.end != RUNNING or frames >= rules.limit or rules.repeat > 0.0:
+        return False
+    if actions[w, 0] != memory.pressed or memory.serving or memory.tilt > 0.0 or memory.tilted:
+        return False
+    if frames - memory.scored >= STUCK_FRAMES or not falls_from_high(rules, worlds, w):
+        return False
+    until = frames / rules.fps
+    if not is_calm(state.balls, state.pairs, state.motions, worlds.tables.parts, w, world.scene, until, 0.0):
+        return False
+    hi, lo = world.time_hi, world.time_lo
+    world.time_hi, world.time_lo = until, 0.0
+    # A flight that bends downwards is, between two frames, no lower than at one of them.
+    if not falls_from_high(rules, worlds, w):
+        world.time_hi, world.time_lo = hi, lo
+        return False
+    clear_hits(state, w)
+    # An episode that ended in the last step has been followed by a new one, of which this is the first step.
+    if worlds.results.ended[w].end != RUNNING:
+        open_books(worlds.results, w)
+    worlds.held[w, 0], episode.frames = actions[w, 0], frames
+    observe(rules, worlds, w, worlds.results.observations)
+    return True
+
+
+@function
+def falls_from_high(rules: Rules, worlds: Worlds, w: int) -> bool:
+    """Whether the ball is above the flippers' zone, to whichever side, in a flight that does not bend upwards."""
+    table = rules.layout.tables[worlds.state.worlds[w].scene]
+    return worlds.state.balls[w, 0].ay <= 0.0 and ball_now(worlds.state, worlds.tables, w, 0)[1] > table.zone_top
+
+
+is_game(Rules, begin=begin, play=play, glide=glide, observe=observe, borrow_rules=borrow_rules)
+
+
+class PinballGame(Game):
+    """The pinball game for a batch: scene, tables and rules, and what an agent sees and does.
+
+    Raises ValueError where the scene cannot be played (`games.table`), SceneError where it cannot be read.
+    """
+
+    counters = (
+        "points_bumpers",
+        "points_slingshots",
+        "points_targets",
+        "points_rollovers",
+        "banks",
+        "touches",
+        "flips",
+        "saves",
+        "stuck_freed",
+        "hold_released",
+        "nudges",
+        "tilts",
+    )
+    memory = MEMORY
+
+    def __init__(self, options: PinballOptions) -> None:
+        super().__init__(options)
+        layout = layout_of(self.scenes)
+        self.rules = Rules(
+            layout,
+            float(FPS),
+            options.frame_skip,
+            frame_limit(options),
+            options.repeat_action_probability,
+            MAX_EVENTS,
+            options.balls,
+            int(options.nudge),
+        )
+        codes: tuple[float, ...] = (0.0, 1.0, 2.0, 3.0)
+        if options.nudge:
+            codes += (float(NUDGE_LEFT), float(NUDGE_RIGHT))
+        self.actions = Buttons(4 if options.nudge else 2) if options.action == "buttons" else Discrete(codes)
+        self.field = outline(self.scenes[0])
+        self.observation_low, self.observation_high = self._bounds(layout, options)
+
+    def _bounds(self, layout: Layout, options: PinballOptions) -> tuple[np.ndarray, np.ndarray]:
+        """Of what is observed: the speed is capped at bounces, and the ball may fall through the table after one."""
+        scene = self.scenes[0]
+        x0, y0, x1, y1 = self.field
+        gx, gy = scene.gravity
+        assert scene.max_speed is not None
+        fastest = max(scene.max_speed, LAUNCH_SPEED[1]) + (math.hypot(*NUDGE) if options.nudge else 0.0)
+        speed = math.sqrt(fastest**2 + 2.0 * (abs(gx) * (x1 - x0) + abs(gy) * (y1 - y0))) / REFERENCE_SPEED
+        flippers = int(np.count_nonzero(layout.sides[0]))
+        table = layout.tables[0]
+        shares = flippers + 6 + int(table["targets"]) + int(table["rollovers"]) + layout.bumpers.shape[1]
+        buttons = 4 if options.nudge else 2
+        shares += 2 * options.nudge + (buttons if options.repeat_action_probability > 0.0 else 0)
+        high = np.array([1.0, 1.0, speed, speed] + [1.0] * shares, np.float32)
+        low = np.array([-1.0, -1.0, -speed, -speed] + [0.0] * shares, np.float32)
+        return low, high

@@ -1,0 +1,159 @@
+"""What a pinball table is made of: the elements that mean something to the game, found by their names' first words.
+
+A name is such a word, or begins with it and "_", "bumper" or "bumper_3"; see the built-in pinball.toml.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bounce_env.engine.layout import Array, record
+from bounce_env.scene import Element, Field, Flipper, Scene, Sensor, Wall
+
+# What an element is to the game.
+NOTHING, BUMPER, SLINGSHOT, TARGET, ROLLOVER, FLIPPER, IN_PLAY = 0, 1, 2, 3, 4, 5, 6
+
+WORDS = {
+    "bumper": BUMPER,
+    "slingshot": SLINGSHOT,
+    "target": TARGET,
+    "rollover": ROLLOVER,
+    "flipper_left": FLIPPER,
+    "flipper_right": FLIPPER,
+    "in_play": IN_PLAY,
+}
+
+MOST_LAMPS = 62
+"""Targets, and rollovers, of one table at most: each is a bit of one number."""
+
+TABLE = record(
+    x="f8", y="f8", x_scale="f8", y_scale="f8",  # [m, 1/m] from metres to what is observed as [-1, 1]
+    plunger_x="f8", plunger_y="f8", up_x="f8", up_y="f8",  # [m] where a ball is shot from; unit vector, against gravity
+    zone_left="f8", zone_right="f8", zone_top="f8",  # [m] where a flipper may hold the ball's centre
+    targets="i8", rollovers="i8",  # how many there are
+)  # fmt: skip
+
+
+class Layout(NamedTuple):
+    """The tables of a batch; first axis scenes."""
+
+    tables: Array  # (scenes,) TABLE
+    roles: Array  # (scenes, elements) int64
+    lamps: Array  # (scenes, elements) int64: which target or rollover it is, from 0 on; otherwise -1
+    sides: Array  # (scenes, parts) int64: the button that moves a part, 1 left or 2 right; 0 for none
+    bumpers: Array  # (scenes, bumpers) int64: their elements, -1 where a scene has fewer
+    cooldowns: Array  # (scenes, bumpers) float64: [1/s] from what is left of a cooldown to what is observed
+
+
+def word_of(name: str) -> str:
+    """The word that a name begins with, or "" if it is none that the game knows."""
+    return next((word for word in (*WORDS, "plunger") if name == word or name.startswith(f"{word}_")), "")
+
+
+def role_of(element: Element) -> int:
+    """What an element is to the game."""
+    return WORDS.get(word_of(element.name), NOTHING)
+
+
+def problems_of(scene: Scene) -> list[str]:
+    """Why a scene cannot be played as pinball; empty if it can."""
+    named = [(word_of(e.name), e) for e in scene.elements]
+    plungers = [e for word, e in named if word == "plunger"]
+    kinds = {
+        "flipper_left": Flipper,
+        "flipper_right": Flipper,
+        "rollover": Sensor,
+        "in_play": Sensor,
+        "plunger": Sensor,
+    }
+    needs = {
+        "flippers = 0: must be at least 1 (named flipper_left or flipper_right)": any(
+            word.startswith("flipper") for word, _ in named
+        ),
+        f'"plunger": must name exactly 1 sensor, not {len(plungers)}': len(plungers) == 1,
+        '"in_play": must name a sensor': any(word == "in_play" for word, _ in named),
+        "drains = 0: must be at least 1 (a sensor with drain = true)": any(
+            isinstance(e, Sensor) and e.drain for e in scene.elements
+        ),
+        "walls = 0: must be at least 1": any(isinstance(e, Wall) for e in scene.elements),
+        f"ball.radius = {scene.ball.radius!r}: must be > 0": scene.ball.radius > 0.0,
+        "max_speed = None: must be given": scene.max_speed is not None,
+        f"gravity = {scene.gravity!r}: must not be zero": scene.gravity != (0.0, 0.0),
+    }
+    problems = [words for words, met in needs.items() if not met]
+    for word, element in named:
+        if word in kinds and not isinstance(element, kinds[word]):
+            problems.append(f"{element.name!r}: must be a {kinds[word].__name__}, as its name begins with {word!r}")
+        elif WORDS.get(word) in (BUMPER, SLINGSHOT, TARGET) and isinstance(element, Sensor | Field):
+            problems.append(f"{element.name!r}: must bounce the ball, as its name begins with {word!r}")
+        if word == "plunger" and isinstance(element, Sensor) and element.circle is None:
+            problems.append(f"{element.name!r}: must be a circle; a ball is shot from its centre")
+    for word in ("target", "rollover"):
+        count = sum(known == word for known, _ in named)
+        if count > MOST_LAMPS:
+            problems.append(f"{word}s = {count}: must be at most {MOST_LAMPS}")
+    return problems
+
+
+def layout_of(scenes: tuple[Scene, ...]) -> Layout:
+    """What the kernels need to know; raises ValueError, with all that is wrong, where a scene cannot be played."""
+    for scene in scenes:
+        problems = problems_of(scene)
+        if problems:
+            raise ValueError("a scene for the pinball game: " + "; ".join(problems))
+    elements = max(len(scene.elements) for scene in scenes)
+    bumpers = max(sum(role_of(e) == BUMPER for e in scene.elements) for scene in scenes)
+    layout = Layout(
+        np.zeros(len(scenes), TABLE),
+        np.zeros((len(scenes), elements), np.int64),
+        np.full((len(scenes), elements), -1),
+        np.zeros((len(scenes), max(len(scene.parts) for scene in scenes)), np.int64),
+        np.full((len(scenes), bumpers), -1),
+        np.zeros((len(scenes), bumpers)),
+    )
+    for s, scene in enumerate(scenes):
+        _fill(layout, s, scene)
+    return layout
+
+
+def _fill(layout: Layout, s: int, scene: Scene) -> None:
+    roles = [role_of(e) for e in scene.elements]
+    layout.roles[s, : len(roles)] = roles
+    for role in (TARGET, ROLLOVER):
+        lamps = [i for i, known in enumerate(roles) if known == role]
+        layout.lamps[s, lamps] = range(len(lamps))
+    for m, (_, part) in enumerate(scene.parts):
+        layout.sides[s, m] = {"flipper_left": 1, "flipper_right": 2}.get(word_of(part.name), 0)
+    for j, i in enumerate(i for i, role in enumerate(roles) if role == BUMPER):
+        element = scene.elements[i]
+        assert not isinstance(element, Sensor | Field)
+        layout.bumpers[s, j] = i
+        layout.cooldowns[s, j] = 1.0 / element.cooldown if element.cooldown > 0.0 else 0.0
+    plunger = next(e for e in scene.elements if word_of(e.name) == "plunger")
+    assert isinstance(plunger, Sensor)
+    assert plunger.circle is not None
+    (px, py), _ = plunger.circle
+    left, below, right, above = outline(scene)
+    zone = zone_of(scene)
+    gx, gy = scene.gravity
+    pull = math.sqrt(gx * gx + gy * gy)
+    layout.tables[s] = (
+        left, below, 2.0 / (right - left), 2.0 / (above - below), px, py, -gx / pull, -gy / pull, *zone,
+        roles.count(TARGET), roles.count(ROLLOVER),
+    )  # fmt: skip
+
+
+def outline(scene: Scene) -> tuple[float, float, float, float]:
+    """x_min, y_min, x_max, y_max [m] of what bounces the ball: where its centre may be."""
+    boxes = [e.bounds for e in scene.elements if not isinstance(e, Sensor | Field)]
+    x0, y0, x1, y1 = zip(*boxes, strict=True)
+    return min(x0), min(y0), max(x1), max(y1)
+
+
+def zone_of(scene: Scene) -> tuple[float, float, float]:
+    """Left, right and top [m] of where a flipper may hold the ball's centre: what it sweeps, and a diameter more."""
+    boxes = [e.bounds for e in scene.elements if isinstance(e, Flipper)]
+    diameter = 2.0 * scene.ball.radius
+    left, right = min(box[0] for box in boxes) - diameter, max(box[2] for box in boxes) + diameter
+    return left, right, max(box[3] for box in boxes) + diameter

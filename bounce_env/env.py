@@ -55,6 +55,7 @@ def picture_of(batch: Batch, world: int) -> Picture:
         cores=cores,
         alive=batch.state.balls["status"][world] != OUT,
         hits=batch.state.hits[world, :elements],
+        lit=None if batch.memory is None else batch.game.lamps(batch.memory[world]),
         score=float(batch.episodes[world].score),
     )
 
@@ -294,9 +295,9 @@ class PinballEnv(BounceEnv):
     `reset`: `position` puts the first ball straight into play, `velocity` says how fast it is.
 
     End: terminated when the last ball drains; truncated after `time_limit` seconds of play (or, never seen in play,
-    when more than 500 events fall into one frame: `end_reason` "budget"). A ball that drains within 5 s is given back,
-    once. When one has been in the flippers' zone for 4 s, both are released until it has left it (`hold_released`).
-    One that has hit nothing that counts for 10 s is stuck, and is shot again (`stuck_freed`).
+    when more than 10 000 events fall into one frame: `end_reason` "budget"). A ball that drains within 5 s is given
+    back, once. When one has been in the flippers' zone for 4 s, both are released until it has left it
+    (`hold_released`). One that has hit nothing that counts for 10 s is stuck, and is shot again (`stuck_freed`).
 
     Info: each step `score` and `ball` (0 to `balls` - 1). At an episode's end also `end_reason`, `points_bumpers`,
     `points_slingshots`, `points_targets`, `points_rollovers`, `banks`, `touches` (hits of flippers), `flips`, `saves`,

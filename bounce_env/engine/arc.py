@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 from bounce_env.engine.flight import bending, grazes, moved, slow_on_circle, sped
-from bounce_env.engine.jit import Feature, Record, function
+from bounce_env.engine.jit import Feature, Record, function, routine
 from bounce_env.engine.layout import CLOSED, MINOR
 from bounce_env.engine.quartic import distance_polynomial, monotone_borders, root_between, value, without_root_at_zero
 from bounce_env.engine.tolerances import PRESSING, WEIGHTLESS
@@ -68,7 +68,7 @@ def entry_time(
     return crossing_time(None, radius, -1.0, x, y, vx, vy, ax, ay, outside, slack, after, horizon)
 
 
-@function
+@routine
 def crossing_time(
     arc: Any,
     reach: float,

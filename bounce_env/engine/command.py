@@ -3,7 +3,7 @@
 from bounce_env.engine.crush import mind_crushed
 from bounce_env.engine.disturb import slow_down
 from bounce_env.engine.drive import end_rides, replan_part, resume_part, set_off
-from bounce_env.engine.jit import Record, Table, function
+from bounce_env.engine.jit import Record, Table, function, routine
 from bounce_env.engine.layout import State, Tables
 
 
@@ -32,7 +32,7 @@ def command_ends(
         _move_otherwise(state, tables, state.motions, tables.parts, w, m)
 
 
-@function
+@routine
 def _move_otherwise(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int) -> None:
     """Let part `m` move as it has now been commanded to."""
     end_rides(state, tables, w, m)

@@ -6,7 +6,7 @@ from bounce_env.engine.arrive import end_flight
 from bounce_env.engine.ends import is_dragged, line_at
 from bounce_env.engine.flight import fly, moved, sped
 from bounce_env.engine.instant import since
-from bounce_env.engine.jit import Record, Table, function
+from bounce_env.engine.jit import Record, Table, function, routine
 from bounce_env.engine.layout import CROSSING, FIELD_EDGE, LINE, OUT, State, Tables
 from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.resolve import count_hit
@@ -14,7 +14,7 @@ from bounce_env.engine.search import plan_crossing, pull, resolve_next
 from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 
 
-@function
+@routine
 def cross(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     """Process a crossing. The flight goes on as if there were nothing, unless it is a drain or changes the pull."""
     ball = state.balls[w, k]
@@ -53,7 +53,7 @@ def _enter_ring(state: State, tables: Tables, w: int, k: int, rings: Table, side
     _report(state, tables, w, k, ring.element, ring.drain, dx / distance, dy / distance, ledger)
 
 
-@function
+@routine
 def _report(
     state: State, tables: Tables, w: int, k: int, element: int, drain: int, nx: float, ny: float, ledger: Table
 ) -> None:

@@ -5,7 +5,7 @@ import math
 from bounce_env.engine.disturb import disturb
 from bounce_env.engine.drive import block, end_rides, hold_still, replan_part, resume_part
 from bounce_env.engine.ends import ends_of
-from bounce_env.engine.jit import Table, function
+from bounce_env.engine.jit import Table, function, routine
 from bounce_env.engine.layout import CRUSH, CRUSHED, HELD, OK, State, Tables
 from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.parts import core_at, plan_zones, side_of_part, surface_velocity, turn_of
@@ -15,7 +15,7 @@ from bounce_env.engine.tolerances import CLEARANCE
 from bounce_env.engine.touch import on_capsule
 
 
-@function
+@routine
 def crush(
     state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, vx: float, vy: float, ledger: Table
 ) -> None:
@@ -44,7 +44,7 @@ def crush(
     block(state, tables, motions, parts, w, m, ledger)
 
 
-@function
+@routine
 def mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int) -> None:
     """Part `m` has set off: it may not close on a crushed ball, and frees those that it moves away from."""
     if motions is None or parts is None:

@@ -4,13 +4,13 @@ from bounce_env.engine.arrive import arrive, end_flight, face_crossings
 from bounce_env.engine.crossing import accelerate, take_sides
 from bounce_env.engine.flight import touch_tolerance
 from bounce_env.engine.instant import since
-from bounce_env.engine.jit import Table, function
+from bounce_env.engine.jit import Table, function, routine
 from bounce_env.engine.layout import CRUSHED, FLYING, OK, OUT, RESOLVE, State, Tables
 from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.search import pull, resolve_next
 
 
-@function
+@routine
 def place(state: State, tables: Tables, w: int, k: int, x: float, y: float, vx: float, vy: float) -> None:
     """Put ball `k` into flight at (x, y) [m] with velocity (vx, vy) [m/s] at the world's present time."""
     ball, world = state.balls[w, k], state.worlds[w]
@@ -37,7 +37,7 @@ def _enter_zones(zones: Table, w: int, k: int) -> None:
             zones[w, k, m].inside = 1
 
 
-@function
+@routine
 def disturb(state: State, tables: Tables, w: int, k: int, drag: float, dvx: float, dvy: float) -> None:
     """Let a new flight of ball `k` begin now, at `drag` times its velocity plus (dvx, dvy) [m/s].
 

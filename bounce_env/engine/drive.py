@@ -6,7 +6,7 @@ against what they touch, and every ball that it can reach searches it anew.
 
 from bounce_env.engine.disturb import disturb
 from bounce_env.engine.ends import ends_of, is_dragged, move_ends, next_stop_of_ends, set_ends_off, stop_ends
-from bounce_env.engine.jit import Record, Table, function
+from bounce_env.engine.jit import Record, Table, function, routine
 from bounce_env.engine.layout import OUT, PART_STOPS, State, Tables
 from bounce_env.engine.parts import core_at, kept_offset, side_of_part, stop_instant, surface_velocity, turn_of
 from bounce_env.engine.search import plan_parts
@@ -77,7 +77,7 @@ def _rest_ends(all_ends: Table, guides: Table, w: int, m: int, scene: int) -> No
     ends.cx0, ends.cy0, ends.cx1, ends.cy1 = 0.0, 0.0, 0.0, 0.0
 
 
-@function
+@routine
 def replan_part(state: State, tables: Tables, zones: Table, w: int, m: int) -> None:
     """Search anew for every ball that part `m` can reach: it has changed its speed."""
     if zones is None:
@@ -98,7 +98,7 @@ def end_rides(state: State, tables: Tables, w: int, m: int) -> None:
             disturb(state, tables, w, k, 1.0, 0.0, 0.0)
 
 
-@function
+@routine
 def part_stops(
     state: State, tables: Tables, motions: Table, parts: Table, world: Record, w: int, m: int, ledger: Table
 ) -> None:
@@ -111,7 +111,7 @@ def part_stops(
     _halt(state, tables, motion, part, world, w, m, offset, False, hi, lo, ledger)
 
 
-@function
+@routine
 def block(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int, ledger: Table) -> None:
     """Let part `m` stop now, against a ball that is crushed."""
     if motions is None or parts is None:

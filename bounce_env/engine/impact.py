@@ -10,7 +10,7 @@ import math
 from bounce_env.engine.arc import crossing_time
 from bounce_env.engine.baa import open_for
 from bounce_env.engine.flight import bending, dot, grazes, moved, slow_on_circle, sped, swept
-from bounce_env.engine.jit import Feature, function
+from bounce_env.engine.jit import Feature, function, routine
 from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED, WEIGHTLESS
 
 
@@ -248,7 +248,7 @@ def near(x: float, v: float, g: float, t: float, reach: float) -> bool:
     return low <= reach and high >= -reach
 
 
-@function
+@routine
 def circle_time(
     x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, reach: float, slack: float, horizon: float
 ) -> float:
@@ -260,7 +260,7 @@ def circle_time(
     return curved_circle_time(x, y, vx, vy, gx, gy, reach, slack, horizon)
 
 
-@function
+@routine
 def capsule_time(
     x: float,
     y: float,

@@ -23,6 +23,8 @@ from numba.core import caching, cgutils
 from numba.core import types as nb_types
 from numba.extending import intrinsic, overload
 
+from bounce_env.engine.inner import InnerCompiler, KernelCompiler
+
 Record = Any  # one record of a table or of the state, see `engine.layout`; compiled code changes it in place
 Table = Any  # an array, or None where no scene of the batch has what it holds
 Feature = Any  # a number, or None where no scene of the batch has the feature
@@ -31,7 +33,13 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 POLICY: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 # Without their wrappers for Python and C, which nobody calls, functions compile twice as fast.
-INLINED = {**POLICY, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+INLINED = {
+    **POLICY,
+    "forceinline": True,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "pipeline_class": InnerCompiler,
+}
 
 
 @functools.cache
@@ -66,9 +74,15 @@ def function(python_function: F) -> F:
     return compiled
 
 
+def routine(python_function: F) -> F:
+    """As `function`, for what is large, and called from several places: compiled once, and not into each of them."""
+    compiled: F = numba.njit(**{**INLINED, "forceinline": False})(python_function)
+    return compiled
+
+
 def kernel(python_function: F) -> F:
     """Compile an entry point and keep its binary on disk."""
-    compiled: Any = numba.njit(**POLICY)(python_function)
+    compiled: Any = numba.njit(**POLICY, pipeline_class=KernelCompiler)(python_function)
     if not numba.config.DISABLE_JIT:
         compiled._cache = _KernelCache(compiled.py_func)
     return compiled

@@ -10,7 +10,7 @@ from bounce_env.engine.arrive import end_flight
 from bounce_env.engine.flight import magnitude, moved, sped, touch_tolerance
 from bounce_env.engine.impact import circle_time
 from bounce_env.engine.instant import before, later, since
-from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
+from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature, routine
 from bounce_env.engine.law import capped
 from bounce_env.engine.layout import BOUNCE, CRUSHED, FLYING, JAMMED, OUT, SETTLES, State, Tables
 from bounce_env.engine.resolve import is_caught, log, take_opposed
@@ -34,7 +34,7 @@ def difference(ax: Feature, ay: Feature, bx: Feature, by: Feature) -> tuple[Feat
     return ax - bx, ay - by
 
 
-@function
+@routine
 def plan_pairs(state: State, tables: Tables, pairs: Table, w: int, k: int) -> None:
     """Set when ball `k` hits each other ball, as long as both keep to their present flights."""
     if pairs is None:
@@ -107,7 +107,7 @@ def first_pair(pairs: Table, w: int, until_hi: float, until_lo: float) -> tuple[
     return hi, lo, one, other
 
 
-@function
+@routine
 def collide(state: State, tables: Tables, w: int, k: int, j: int, hi: float, lo: float, ledger: Table) -> None:
     """Let balls `k` and `j` hit each other at the instant (hi, lo); both then bounce from what else they touch.
 

@@ -11,7 +11,7 @@ from bounce_env.engine.ends import ends_of, is_dragged, line_at, velocity_on
 from bounce_env.engine.flight import dot, moved, sped, swept, touch_tolerance
 from bounce_env.engine.impact import capsule_time, face_time, falling_time
 from bounce_env.engine.instant import before, later, since
-from bounce_env.engine.jit import Feature, Record, Table, function
+from bounce_env.engine.jit import Feature, Record, Table, function, routine
 from bounce_env.engine.layout import State, Tables
 from bounce_env.engine.stretching import stretching_time
 from bounce_env.engine.trig import sin_cos
@@ -121,7 +121,7 @@ def strip_change(height: float, rate: float, pull: Feature, border: float, insid
     return best
 
 
-@function
+@routine
 def plan_zones(
     ball: Record, state: State, tables: Tables, zones: Table, parts: Table, w: int, k: int, scene: int,
     gx: Feature, gy: Feature, now: float,

@@ -11,7 +11,7 @@ from bounce_env.engine.arc import arc_time
 from bounce_env.engine.flight import dot, moved, swept, time_in_scene
 from bounce_env.engine.impact import beside, circle_time, face_time, facing_time, falling_time, leaves_end
 from bounce_env.engine.instant import before, later
-from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature
+from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature, routine
 from bounce_env.engine.layout import (
     NEXT_HIT,
     NEXT_PART,
@@ -274,7 +274,7 @@ def _way_to_end(ball: Record, face: Record, gx: Feature, gy: Feature) -> float:
     return min(falling_time(along, False, rate, pull), falling_time(face.length - along, False, -rate, back))
 
 
-@function
+@routine
 def plan_parts(state: State, tables: Tables, w: int, k: int) -> None:
     """Search the parts in whose zone a ball is, and set its next event."""
     ball, scene = state.balls[w, k], state.worlds[w].scene

@@ -40,6 +40,10 @@ class Game:
         self.tables: Tables = pack(self.scenes)
         self.step_seconds = options.frame_skip / FPS
 
+    def lamps(self, memory: Any) -> npt.NDArray[np.bool_] | None:
+        """Which elements are lit in a world of which the rules remember this; None: the game has no lamps."""
+        return None
+
     def with_step_limit(self, steps: int | None) -> Self:
         """The same game, truncated after `steps` steps if that comes before the time limit."""
         if steps is not None:

@@ -4,6 +4,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from bounce_env.engine.command import command
 from bounce_env.engine.disturb import disturb, place
@@ -17,7 +18,6 @@ from bounce_env.games.actions import Buttons, Discrete
 from bounce_env.games.episode import (
     DRAINED,
     FPS,
-    MAX_EVENTS,
     OUT_OF_BUDGET,
     RUNNING,
     TIME_LIMIT,
@@ -35,6 +35,7 @@ from bounce_env.games.table import (
     FLIPPER,
     IN_PLAY,
     NOTHING,
+    ROLLOVER,
     SLINGSHOT,
     TARGET,
     Layout,
@@ -63,6 +64,9 @@ NUDGE = (0.25, 0.15)  # m/s to the side and up
 NUDGE_FRAMES = FPS // 4  # after which the next one may follow
 NUDGE_COST = 1.0  # of the tilt meter, which shows 3 at a tilt
 TILT, TILT_PER_FRAME = 3.0, 0.5 / FPS
+
+# In one frame. A ball that all but stands on the end of a wall leaves it in more than a thousand tiny hops.
+MAX_EVENTS = 10_000
 
 REFERENCE_SPEED = 1.0  # m/s; the speed that is observed as 1
 
@@ -536,7 +540,18 @@ class PinballGame(Game):
         self.field = outline(self.scenes[0])
         self.observation_low, self.observation_high = self._bounds(layout, options)
 
-    def _bounds(self, layout: Layout, options: PinballOptions) -> tuple[np.ndarray, np.ndarray]:
+    def lamps(self, memory: Any) -> npt.NDArray[np.bool_]:
+        """Targets that are lit, and rollovers that are."""
+        layout = self.rules.layout
+        lamps = np.maximum(layout.lamps[0], 0)
+        targets = (layout.roles[0] == TARGET) & ((memory["lit"] >> lamps) & 1 == 1)
+        rollovers = (layout.roles[0] == ROLLOVER) & ((memory["passed"] >> lamps) & 1 == 1)
+        lit: npt.NDArray[np.bool_] = targets | rollovers
+        return lit
+
+    def _bounds(
+        self, layout: Layout, options: PinballOptions
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
         """Of what is observed: the speed is capped at bounces, and the ball may fall through the table after one."""
         scene = self.scenes[0]
         x0, y0, x1, y1 = self.field

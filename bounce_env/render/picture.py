@@ -12,11 +12,13 @@ class Picture:
     balls: centres, metres, shape (k, 2). cores: ends of the cores of the scene's moving parts in the order of its
     elements (`World.cores`), x, y, x, y, metres, shape (m, 4). alive: which balls are in play and drawn, shape (k,);
     None for all. hits: how often each element was struck since the last frame, shape (len(scene.elements),): what was
-    struck lights up; None for nothing. score: printed in a corner; None for no text.
+    struck lights up; None for nothing. lit: which elements are lit as lamps are, of the same shape; None for none.
+    score: printed at the top; None for no text.
     """
 
     balls: npt.ArrayLike
     cores: npt.ArrayLike = ()
     alive: npt.ArrayLike | None = None
     hits: npt.ArrayLike | None = None
+    lit: npt.ArrayLike | None = None
     score: float | None = None

@@ -45,7 +45,9 @@ class Renderer:
             for i, e in parts.items()
         }
         self._ball = painter.Sprite(ball_look(scene, self.projection))
-        self._label = painter.Label(*_label_place(scene, self.projection))
+        blank = painter.still_picture(*size, [])
+        inked: npt.NDArray[np.bool_] = np.any(self._background != blank, axis=2)
+        self._label = painter.Label(*_label_place(scene, self.projection, inked))
 
     def frame(self, picture: Picture) -> npt.NDArray[np.uint8]:
         """A new C-contiguous array of RGB pixels, shape (height, width, 3), rows from the top.
@@ -57,6 +59,7 @@ class Renderer:
         cores = self.projection.to_pixels(_ends("cores", picture.cores, len(self._parts)))
         alive = _flags("alive", picture.alive, len(balls), missing=True)
         hits = _flags("hits", picture.hits, self._elements, missing=False)
+        hits |= _flags("lit", picture.lit, self._elements, missing=False)
         text = None if picture.score is None else _printed(picture.score)
 
         pixels = self._background.copy()
@@ -73,18 +76,28 @@ class Renderer:
         return pixels
 
 
-def _label_place(scene: Scene, projection: Projection) -> tuple[int, int, int, int]:
-    """Left, top, room to the right and text size, in pixels: the top left corner inside of what bounces the ball.
+def _label_place(scene: Scene, projection: Projection, inked: npt.NDArray[np.bool_]) -> tuple[int, int, int, int]:
+    """Left, top, room to the right and text size, in pixels: at the top, inside of what bounces the ball.
 
-    Sensors do not count, for a drain may be wider than the field; neither do regions of acceleration.
+    The uppermost place, of these the leftmost, where a score of five digits covers nothing that is `inked`; the corner
+    if there is none. Sensors do not count as the inside, for a drain may be wider than the field, nor do regions of
+    acceleration.
     """
     boxes = [e.bounds for e in scene.elements if not isinstance(e, Sensor | Field)] or [scene.bounds]
     x_min, y_min, x_max, y_max = np.transpose(boxes)
     corners = [(x_min.min(), y_max.max()), (x_max.max(), y_min.min())]
-    (left, top), (right, bottom) = projection.to_pixels(corners).tolist()
+    (left, top), (right, bottom) = projection.to_pixels(corners).round().astype(int).tolist()
     inset = max(2, round(0.025 * min(projection.width, projection.height)))
-    room = max(1, int(right - left) - 2 * inset)
-    return round(left) + inset, round(top) + inset // 2, room, max(11, round(0.075 * (bottom - top)))
+    size = max(11, round(0.075 * (bottom - top)))
+    left, top, right = left + inset, top + inset // 2, right - inset
+    width, height = round(2.3 * size), round(0.8 * size)
+    for y in range(top, top + round(0.2 * (bottom - top)) - height):
+        blocked = inked[y : y + height, left:right].any(axis=0)
+        free = np.convolve(blocked, np.ones(width, int), "valid") == 0 if blocked.size >= width else np.zeros(0, bool)
+        if free.any():
+            x = int(free.argmax())
+            return left + x, y, int(np.append(blocked[x:], True).argmax()), size
+    return left, top, max(1, right - left), size
 
 
 def _points(name: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:

@@ -46,7 +46,8 @@ class Renderer:
         }
         self._ball = painter.Sprite(ball_look(scene, self.projection))
         blank = painter.still_picture(*size, [])
-        inked: npt.NDArray[np.bool_] = np.any(self._background != blank, axis=2)
+        differs: npt.NDArray[np.bool_] = np.not_equal(self._background, blank)
+        inked = differs.any(axis=2)
         self._label = painter.Label(*_label_place(scene, self.projection, inked))
 
     def frame(self, picture: Picture) -> npt.NDArray[np.uint8]:

@@ -1,34 +1,27 @@
-"""Re-derives a whole run of one ball from its ledger, and says what is not as it must be.
+"""Re-derives a whole run from its ledger, and says what is not as it must be.
 
 `find_problems(scene, start, ledger, end, commands)` goes from row to row: every flight must lead to the next row, every
-bounce obey the law on the true surface, every contact begin and end with a reason. Then the whole path is searched for
-sensor crossings that were missed and for elements that it went through. No code of the engine takes part; what it must
-do is in design.md, "Physics contract".
+bounce obey the law on the true surface, every contact begin and end with a reason, every part stop where its motion
+ends. Then the whole path of each ball is searched for sensor crossings that were missed, and for elements and balls that
+it went through. No code of the engine takes part; what it must do is in design.md, "Physics contract".
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from ledger_known import (
-    BOUNCE,
-    CONTACT_BEGINS,
-    CONTACT_ENDS,
-    CROSSING,
-    EXACT,
-    PART_STOPS,
-    STANDING,
-    TOLERANCE,
-    Row,
-    apart,
-)
-from ledger_rows import RowChecks
+from ledger_drive import Command
+from ledger_gaps import least_distances
+from ledger_pairs import PairChecks
+from ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, CRUSH, PART_STOPS, Row, apart
 from ledger_sensors import Whole
+from ledger_setting import EXACT, STANDING, TOLERANCE, Setting
 from ledger_touch import ULP, Ledger
-from ledger_walk import Command, State
+from ledger_walk import State
 
 from bounce_env.scene import Scene
 
@@ -36,14 +29,14 @@ OK, BUDGET, CRUSHED, OUT = range(4)
 
 
 class Start(NamedTuple):
-    """The ball at time 0 [m, m/s]."""
+    """A ball at time 0 [m, m/s]."""
 
     position: tuple[float, float]
     velocity: tuple[float, float]
 
 
 class End(NamedTuple):
-    """The world after the run; `asked` is the time that it was to reach, where that is known [s]."""
+    """A ball after the run; `asked` is the time that it was to reach, where that is known [s]."""
 
     time: float
     position: tuple[float, float]
@@ -53,66 +46,115 @@ class End(NamedTuple):
 
 
 def find_problems(scene: Scene, start: Start, ledger: Ledger, end: End, commands: Sequence[Command] = ()) -> list[str]:
-    """What is wrong with a run, in words; an empty list if nothing is.
+    """What is wrong with a run of one ball, in words; an empty list if nothing is.
 
-    ledger: all rows from time 0 to `end.time`. commands: what was given meanwhile, see `ledger_walk.Command`.
+    ledger: all rows from time 0 to `end.time`. commands: what was given meanwhile, see `ledger_drive.Command`.
     """
-    return _malformed(scene, ledger, end) or _Check(scene, start, ledger, end, commands).run()
+    return find_problems_of_all(scene, [start], ledger, [end], commands)
 
 
-def _malformed(scene: Scene, ledger: Ledger, end: End) -> list[str]:
+def find_problems_of_all(
+    scene: Scene, starts: Sequence[Start], ledger: Ledger, ends: Sequence[End], commands: Sequence[Command] = ()
+) -> list[str]:
+    """The same of a run of several balls."""
+    problems = list(_malformed(scene, ledger, ends))
+    if problems:
+        return problems
+    setting = Setting(scene, ledger, ends[0].time, commands)
+    checks = [
+        _Check(setting, ball, State(0.0, *start.position, *start.velocity), ledger, end)
+        for ball, (start, end) in enumerate(zip(starts, ends, strict=True))
+    ]
+    for check in checks:
+        check.others = checks
+    reached = [0] * len(checks)
+    for row in setting.rows:
+        if row.kind != PART_STOPS:
+            checks[row.ball].take(reached[row.ball])
+            reached[row.ball] += 1
+    problems = list(setting.drive.problems)
+    for check in checks:
+        check.finish()
+        check.look_back()
+        problems += check.problems
+    return problems + list(_overlaps(setting, checks))
+
+
+def _malformed(scene: Scene, ledger: Ledger, ends: Sequence[End]) -> Iterator[str]:
     """What makes it useless to look further."""
     if ledger.dtype.names != Row._fields:
-        return [f"the fields are {ledger.dtype.names}"]
-    problems = [
-        f"{name} is not finite in rows {np.flatnonzero(~np.isfinite(ledger[name])).tolist()}"
-        for name in Row._fields
-        if not np.isfinite(ledger[name]).all()
-    ]
-    if not np.isfinite([end.time, *end.position, *end.velocity]).all():
-        problems.append("the end is not finite")
+        yield f"the fields are {ledger.dtype.names}"
+        return
+    for name in Row._fields:
+        if not np.isfinite(ledger[name]).all():
+            yield f"{name} is not finite in rows {np.flatnonzero(~np.isfinite(ledger[name])).tolist()}"
+    for end in ends:
+        if not np.isfinite([end.time, *end.position, *end.velocity]).all():
+            yield "the end is not finite"
+    ball, kind, other = ledger["ball"], ledger["kind"], ledger["element"] - len(scene.elements)
+    meets = (kind == BOUNCE) & (other >= 0) & (other < len(ends)) & (other != ball)
     known = {
-        "element": (ledger["element"] >= 0) & (ledger["element"] < len(scene.elements)),
-        "ball": ledger["ball"] == np.where(ledger["kind"] == PART_STOPS, -1, 0),
-        "kind": (ledger["kind"] >= BOUNCE) & (ledger["kind"] <= PART_STOPS),
+        "element": (ledger["element"] >= 0) & ((other < 0) | meets),
+        "ball": np.where(kind == PART_STOPS, ball == -1, (ball >= 0) & (ball < len(ends))),
+        "kind": (kind >= BOUNCE) & (kind <= CRUSH),
     }
     for name, right in known.items():
-        problems += [f"row {k}: {name} cannot be {ledger[name][k]}" for k in np.flatnonzero(~right)]
-    times = np.concatenate([[0.0], ledger["time"], [end.time]])
+        for k in np.flatnonzero(~right):
+            yield f"row {k}: {name} cannot be {ledger[name][k]}"
+    times = np.concatenate([[0.0], ledger["time"], [ends[0].time]])
     for k in np.flatnonzero(np.diff(times) < 0.0):
-        problems.append(f"row {k}: time goes back from {times[k]!r} to {times[k + 1]!r}")
-    return problems
+        yield f"row {k}: time goes back from {times[k]!r} to {times[k + 1]!r}"
+    if any((end.time, end.asked) != (ends[0].time, ends[0].asked) for end in ends):
+        yield "the balls' runs end at different times"
 
 
-class _Check(RowChecks):
-    def __init__(self, scene: Scene, start: Start, ledger: Ledger, end: End, commands: Sequence[Command]) -> None:
-        super().__init__(scene, State(0.0, *start.position, *start.velocity), ledger, end.time, commands)
+def _overlaps(setting: Setting, checks: Sequence[_Check]) -> Iterator[str]:
+    """Where two balls come deeper into each other than a billionth of the scene's size."""
+    reach = 2.0 * setting.scene.ball.radius
+    for one, other in combinations(checks if reach else (), 2):
+        if not (one.walk.pieces and other.walk.pieces):
+            continue
+        distances, pieces, times = least_distances(one.walk.pieces, other.walk.pieces)
+        for k in np.flatnonzero(distances < reach - TOLERANCE * setting.size):
+            number = one.numbers[one.walk.pieces[pieces[k]].row]
+            deep = f"{reach - distances[k]:.3g} m deep in each other after {times[k]:.9g} s"
+            yield f"before row {number}: balls {one.ball} and {other.ball} are {deep}"
+
+
+class _Check(PairChecks):
+    """The checks of one ball."""
+
+    def __init__(self, setting: Setting, ball: int, start: State, ledger: Ledger, end: End) -> None:
+        super().__init__(setting, ball, start, ledger)
         self.end = end
 
-    def run(self) -> list[str]:
-        for index, row in enumerate(self.rows):
-            if row.kind == PART_STOPS:
-                continue
-            if self.walk.out:
-                self.say(index, "the ball is out of play")
-                continue
-            self.arrive(index, State(row.time, row.x, row.y, *row.before), row.kind, row.element)
-            match row.kind:
-                case 0:
-                    self.bounce(index, row)
-                case 1:
-                    self.contact_begins(index, row)
-                case 2:
-                    self.contact_ends(index, row)
-                case 3:
-                    self.crossing(index, row)
-        self.finish()
-        self.parts()
-        whole = Whole(self.scene, self.walk.pieces, self.switches, self.size, self.extent)
-        self.problems += whole.sensors(self.reports)
-        self.problems += whole.penetration(self.shapes)
-        self.problems += whole.sides(self.shapes, self.rows)
-        return self.problems
+    def take(self, index: int) -> None:
+        """Check the next row."""
+        row = self.rows[index]
+        if self.walk.out:
+            self.say(index, "the ball is out of play")
+            return
+        self.set_free(row.time)
+        met = row.element >= len(self.scene.elements)
+        if self.is_crushed and not met:
+            self.say(index, "the ball is crushed")
+        before = row.before
+        if row.kind == CRUSH and any(r.before == before for r in self.at_instant(index)):
+            before = self.ways[0].state[3:]  # of bounces and a crush at one instant each tells how the ball came
+        self.arrive(index, State(row.time, row.x, row.y, *before), row.kind, row.element)
+        match row.kind:
+            case 0 if met:
+                self.meets(index, row)
+            case 0:
+                self.bounce(index, row)
+            case 1:
+                self.contact_begins(index, row)
+            case 2:
+                self.contact_ends(index, row)
+            case 3:
+                self.crossing(index, row)
+            case 5:
+                self.crushed(index, row)
 
     # ---- motions
 
@@ -131,7 +173,9 @@ class _Check(RowChecks):
             mode, bearer, settles_at = walk.mode, walk.bearer, walk.settles_at
             acted = walk.act()
             wrong = self.differs(way.state, pull, walk.state, seen)
-            switched_off = kind in (BOUNCE, CONTACT_BEGINS) and not walk.enabled[element]
+            switched_off = (
+                kind in (BOUNCE, CONTACT_BEGINS) and element < len(walk.enabled) and not walk.enabled[element]
+            )
             if acted and (wrong or switched_off):  # it was before the commands of this instant
                 walk.back(here)
                 walk.place(here.state, mode, bearer, settles_at)
@@ -162,37 +206,27 @@ class _Check(RowChecks):
     def finish(self) -> None:
         """The end must follow from the last row."""
         end = self.end
+        self.set_free(end.time)
         if not self.walk.out:
             self.arrive(len(self.rows), State(end.time, *end.position, *end.velocity), -1, -1)
         elif (self.ways[0].state[1:]) != (*end.position, *end.velocity):
             self.problems.append("a ball that is out of play stays where it went out")
-        if end.status != (OUT if self.walk.out else OK) and not self.may_be_stopped():
+        status = OUT if self.walk.out else CRUSHED if self.is_crushed else OK
+        if end.status != status and not self.may_be_stopped():
             self.problems.append(f"at the end the status is {end.status}")
-        if end.asked is not None and end.status != BUDGET and end.time != end.asked:
+        if end.asked is not None and end.status != BUDGET and end.time != end.asked and len(self.others) == 1:
             self.problems.append(f"the run ends at {end.time!r}, not at {end.asked!r}")
 
     def may_be_stopped(self) -> bool:
         """Whether the event budget can have ended the run before the time that was asked for."""
-        if self.end.status != BUDGET or self.walk.out:
+        if self.end.status != BUDGET or self.walk.out or self.is_crushed:
             return False
         return self.end.asked is None or self.end.time < self.end.asked
 
-    # ---- parts
-
-    def parts(self) -> None:
-        """Paddles must stop when their commands let them run into the ends of their rails."""
-        for element, paddle in self.paddles.items():
-            said = [(k, row) for k, row in enumerate(self.rows) if row.kind == PART_STOPS and row.element == element]
-            due = [stop for stop in paddle.stops if stop.time <= self.end.time]
-            if len(said) != len(due):
-                self.problems.append(f"elements[{element}] stops {len(due)} times, not {len(said)}")
-                continue
-            for (index, row), stop in zip(said, due, strict=True):
-                derived = (*stop, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-                seen = (row.time, row.x, row.y, *row.before, row.nx, row.ny, *row.after, row.ux, row.uy)
-                scales = (stop.time, self.extent, self.extent, *[math.hypot(stop.vx, stop.vy)] * 2, *[0.0] * 6)
-                if any(abs(a - b) > EXACT * scale for a, b, scale in zip(derived, seen, scales, strict=True)):
-                    self.say(index, f"the paddle stops so: {stop}")
-        for index, row in enumerate(self.rows):
-            if row.kind == PART_STOPS and row.element not in self.paddles:
-                self.say(index, f"elements[{row.element}] is no part")
+    def look_back(self) -> None:
+        """What the whole path passed or went through."""
+        setting = self.setting
+        whole = Whole(self.scene, self.walk.pieces, setting.switches, self.size, self.extent, self.numbers)
+        self.problems += whole.sensors(self.reports)
+        self.problems += whole.penetration(setting.shapes)
+        self.problems += whole.sides(setting.shapes, self.rows)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import combinations
 from typing import NamedTuple
 
 from ledger_law import Rules, Surface, is_friction, is_soft, pressing, rolling_speed, split
@@ -15,6 +16,7 @@ from ledger_touch import Bearing, Vector
 ALIGNED = 1e-9  # by how much the normals that carry a ball may miss the direction of what they carry
 CORNER = 64.0  # times as high as a hop that is none: so much is none between several surfaces
 SWING, BALANCE = 1e-3, 1e-4  # of sqrt(pull rho): the speeds at which a ball rests in a hollow, and on top of a curve
+OPPOSED = 0.5  # two surfaces whose normals oppose each other more than so (by 120 degrees) let nothing out
 SLOW = 4e-14  # share of the speed below which nothing closes or leaves
 
 
@@ -46,7 +48,7 @@ def is_carried(a: Vector, bearings: Sequence[Bearing]) -> bool:
     noise = ALIGNED * (abs(a[0]) + abs(a[1]))
     if noise == 0.0:
         return False
-    standing = [b for b in bearings if b.ux == b.uy == 0.0]
+    standing = [b for b in bearings if b.ux == b.uy == 0.0 and not b.moves]
     for one in standing:
         if abs(a[0] * one.ny - a[1] * one.nx) <= noise and a[0] * one.nx + a[1] * one.ny < 0.0:
             return True
@@ -89,18 +91,40 @@ def is_over(bearings: Sequence[Bearing], v: Vector, a: Vector, rules: Rules, kic
 
 
 def projections(bearings: Sequence[Bearing], v: Vector) -> Iterator[Vector]:
-    """What may be left of a velocity in a corner: along one of the surfaces where the others allow it, else nothing."""
+    """What may be left of a velocity in a corner: along one of the surfaces where the others allow it, else nothing.
+
+    Where parts close on the ball it may keep just ahead of two of them; where friction alone drives it in, it stands.
+    """
     allowed = False
     for one in bearings:
         closing = closing_on(one, v)
         if closing > 0.0:
             left = (v[0] + closing * one.nx, v[1] + closing * one.ny)
-            if all(closing_on(other, left) <= slow(v) for other in bearings):
+            if _closes_on_none(bearings, left, v):
                 allowed = True
                 yield left
-    if not allowed:
-        fastest = max(bearings, key=lambda b: closing_on(b, v))
-        yield fastest.ux, fastest.uy
+    if allowed:
+        return
+    fastest = max(bearings, key=lambda b: closing_on(b, v))
+    yield fastest.ux, fastest.uy
+    if any(b.ux or b.uy for b in bearings):
+        yield 0.0, 0.0
+        for ahead in _squeezed_out(bearings):
+            if _closes_on_none(bearings, ahead, v):
+                yield ahead
+
+
+def _closes_on_none(bearings: Sequence[Bearing], v: Vector, before: Vector) -> bool:
+    return all(closing_on(b, v) <= slow(v) + slow(before) + slow((b.ux, b.uy)) for b in bearings)
+
+
+def _squeezed_out(bearings: Sequence[Bearing]) -> Iterator[Vector]:
+    """The velocities at which a ball keeps just ahead of two surfaces."""
+    for one, other in combinations(bearings, 2):
+        turn = one.nx * other.ny - one.ny * other.nx
+        if one.nx * other.nx + one.ny * other.ny >= -OPPOSED and abs(turn) > ALIGNED:
+            a, b = one.ux * one.nx + one.uy * one.ny, other.ux * other.nx + other.uy * other.ny
+            yield (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
 
 
 def along(bearing: Bearing, v: Vector) -> Vector:
@@ -113,6 +137,8 @@ def after_contact(
     bearing: Bearing, bearings: Sequence[Bearing], v: Vector, a: Vector, f: float, rules: Rules
 ) -> Iterator[Vector]:
     """The velocities that a ball may have in contact with a surface, if it comes to it with `v`."""
+    if bearing.moves:
+        return
     pressed = press_on(bearing, v, a) > 0.0
     rests = pressed and (is_friction(f, rules) or swings_out(bearing, v, a, rules))
     if rests or (is_standing(v, a, rules) and is_carried(a, bearings)):

@@ -1,4 +1,4 @@
-"""What is known on the way through a ledger from row to row, and what the checks of its rows have in common.
+"""What is known on the way through the rows of one ball, and what the checks of its rows have in common.
 
 Of the ledger checker: plain Python and numpy, no code of the engine.
 """
@@ -6,52 +6,23 @@ Of the ledger checker: plain Python and numpy, no code of the engine.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import takewhile
 from typing import NamedTuple
 
-from ledger_contact import (
-    is_carried,
-    is_over,
-)
-from ledger_law import HOP_ULPS, Rules, Surface, is_friction
-from ledger_parts import PaddleRun
-from ledger_sensors import Report, Switches
-from ledger_shapes import Shapes
+import numpy as np
+from ledger_contact import is_carried, is_over
+from ledger_law import Surface, is_friction, least_rebound
+from ledger_motion import Turning
+from ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH, Row, apart
+from ledger_sensors import Report
+from ledger_setting import EXACT, STANDING, TOLERANCE, Setting
 from ledger_touch import ULP, Bearing, Ledger, Own, Touches
-from ledger_walk import Bearer, Command, Mode, State, Walk
+from ledger_walk import Bearer, Mode, State, Walk
 
-from bounce_env.scene import Arc, Field, Paddle, Scene, Sensor
+from bounce_env.scene import Field, Sensor
 
-BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS = range(5)
-TOLERANCE = 1e-9  # of lengths relative to the scene's size, of speeds relative to those that enter
-EXACT = 1e-12  # what one formula may lose
-STANDING = 1e-290  # [m/s] slower than this is not at all
 BOUNCES_AT_ONE_INSTANT = 32  # after so many the ball is stopped by what it touches
-
-
-class Row(NamedTuple):
-    time: float
-    ball: int
-    element: int
-    kind: int
-    x: float
-    y: float
-    nx: float
-    ny: float
-    vx0: float
-    vy0: float
-    vx1: float
-    vy1: float
-    ux: float
-    uy: float
-
-    @property
-    def before(self) -> tuple[float, float]:
-        return self.vx0, self.vy0
-
-    @property
-    def after(self) -> tuple[float, float]:
-        return self.vx1, self.vy1
 
 
 class Way(NamedTuple):
@@ -61,53 +32,39 @@ class Way(NamedTuple):
     mode: Mode
     bearer: Bearer | None
     settles_at: float = math.inf
-
-
-def apart(a: tuple[float, float], b: tuple[float, float]) -> float:
-    return math.hypot(a[0] - b[0], a[1] - b[1])
+    stands_until: float = math.inf
 
 
 class Known:
-    """What is known on the way through a ledger, and the checks of its rows; `problems` fills meanwhile."""
+    """What is known on the way through a ball's rows, and the checks of its rows; `problems` fills meanwhile."""
 
-    def __init__(self, scene: Scene, start: State, ledger: Ledger, end: float, commands: Sequence[Command]) -> None:
-        self.scene = scene
-        self.rows = [Row(*values) for values in ledger.tolist()]
+    def __init__(self, setting: Setting, ball: int, start: State, ledger: Ledger) -> None:
+        """`ledger`: the whole one, of which the rows of this ball count."""
+        self.setting, self.scene, self.ball = setting, setting.scene, ball
+        self.size, self.extent, self.rules = setting.size, setting.extent, setting.rules
+        mine = np.flatnonzero(ledger["ball"] == ball)
+        self.numbers = [*mine.tolist(), len(ledger)]  # of the rows in the ledger, and that of its end
+        self.rows = [setting.rows[k] for k in mine]
         self.problems: list[str] = []
-        x0, y0, x1, y1 = scene.bounds
-        # An arc's places are known from its centre, however far that is from what it occupies.
-        far = [max(map(abs, e.center)) + e.radius for e in scene.elements if isinstance(e, Arc)]
-        largest = max(abs(x0), abs(y0), abs(x1), abs(y1), *far) + scene.ball.radius
-        self.size = max(x1 - x0, y1 - y0) or 1.0
-        self.extent = math.ldexp(1.0, math.frexp(largest)[1])
-        names = {element.name: index for index, element in enumerate(scene.elements) if element.name}
-        self.switches: Switches = {}
-        for time, name, value in commands:
-            if isinstance(value, bool):
-                self.switches.setdefault(names[name], []).append((time, value))
-        self.commanded = {command[0] for command in commands}
-        self.paddles: dict[int, PaddleRun] = {}
-        for index, element in enumerate(scene.elements):
-            if isinstance(element, Paddle):
-                speeds = [(t, v) for t, name, v in commands if name == element.name and type(v) is float]
-                self.paddles[index] = PaddleRun(element, speeds, end)
-        self.shapes = Shapes(scene, self.paddles)
-        self.touches = Touches(self.shapes, ledger, self.switches, {0.0, *self.commanded}, self.extent)
-        cuts = sorted({t for paddle in self.paddles.values() for t in paddle.changes})
-        self.walk = Walk(scene, start, commands, cuts)
-        max_speed = math.inf if scene.max_speed is None else scene.max_speed
-        self.rules = Rules(scene.rest_speed, max_speed, HOP_ULPS * self.extent)
-        self.kicked: dict[int, float] = {}  # when each element gave its last kick
+        self.touches = Touches(
+            setting.shapes, ledger[mine], setting.switches, {0.0, *setting.commanded}, self.extent
+        )
+        cuts = sorted({t for run in setting.runs.values() for t in run.changes})
+        self.walk = Walk(self.scene, start, setting.commands, cuts)
+        self.kicked: dict[int, float] = setting.kicked
         self.ways = [Way(start, Mode.FLIES, None)]  # that the last row may have led to
         self.must_end = False  # whether the ball has left what it was in contact with
         self.reports: dict[int, list[Report]] = {}
         self.instant, self.fastest = -math.inf, 0.0  # [s] of the last bounce or contact, [m/s] in any row of it
         self.rolls_on = -1  # the element off which the ball hopped in its last bounce
+        self.hopped = -math.inf  # [s] when it did
+        self.jammed = -math.inf  # [s] when other balls last stopped it
+        self.is_crushed, self.crushed_at = False, -math.inf
         self.place = start[1:3]
         self.known: dict[int, tuple[float, float]] = {}  # normals of what was touched at this place
 
     def say(self, index: int, words: str) -> None:
-        self.problems.append(f"row {index}: {words}")
+        self.problems.append(f"row {self.numbers[index]}: {words}")
 
     # ---- what rows have in common
 
@@ -121,16 +78,40 @@ class Known:
             self.say(index, f"the ball is {own.gap:.3g} m away from elements[{row.element}]")
             return None
         # The normal is known as well as the place, over the distance from the middle of the curve.
-        blur = EXACT + 32.0 * ULP * self.extent * abs(own.curvatures[0])
+        blur = EXACT + 32.0 * ULP * self.extent * abs(own.curvatures[0]) + self._turned(row)
         if apart((own.nx, own.ny), (row.nx, row.ny)) > blur:
             self.say(index, f"the normal is {(own.nx, own.ny)}, not {(row.nx, row.ny)}")
-        paddle = self.paddles.get(row.element)
-        allowed = [(0.0, 0.0)] if paddle is None else paddle.velocities(row.time, EXACT * row.time)
-        if all(apart(u, (row.ux, row.uy)) > EXACT * math.hypot(*u) for u in allowed):
-            self.say(index, f"the surface moves at {allowed[-1]}, not {(row.ux, row.uy)}")
-        if own.owner != row.element and own.owner not in self.switches:
+        allowed = list(self._surface_velocities(row))
+        if all(apart(u, (row.ux, row.uy)) > near for u, near in allowed):
+            self.say(index, f"the surface moves at {allowed[-1][0]}, not {(row.ux, row.uy)}")
+        if own.owner != row.element and own.owner not in self.setting.switches:
             self.say(index, f"it is elements[{own.owner}] that ends there first")
         return own
+
+    def _turned(self, row: Row) -> float:
+        """By what angle [rad] a part may turn within the rounding of the row's time."""
+        run = self.setting.runs.get(row.element)
+        if run is None:
+            return 0.0
+        core = run.core(np.array([row.time]))
+        length = max(math.hypot(core.x1[0] - core.x0[0], core.y1[0] - core.y0[0]), STANDING)
+        spread = math.hypot(core.vx1[0] - core.vx0[0], core.vy1[0] - core.vy0[0])
+        return 4.0 * ULP * row.time * (spread / length)
+
+    def _surface_velocities(self, row: Row) -> Iterator[tuple[tuple[float, float], float]]:
+        """What the surface's velocity may be at the ball, and how far each [m/s] is known."""
+        run = self.setting.runs.get(row.element)
+        if run is None:
+            yield (0.0, 0.0), 0.0
+            return
+        core = run.around(row.time, EXACT * row.time)
+        radius = self.scene.ball.radius
+        ux, uy = core.surface(row.x - radius * row.nx, row.y - radius * row.ny)
+        spread = np.hypot(core.vx1 - core.vx0, core.vy1 - core.vy0)
+        length = np.maximum(np.hypot(core.x1 - core.x0, core.y1 - core.y0), STANDING)
+        # Which point of the core it is, is known as well as the place.
+        near = EXACT * np.hypot(ux, uy) + 32.0 * ULP * spread / length * (self.extent + spread * row.time)
+        yield from zip(zip(ux.tolist(), uy.tolist(), strict=True), near.tolist(), strict=True)
 
     def blur(self, row: Row) -> float:
         """Speeds [m/s] smaller than this are what is left of larger ones at the same instant, or of its rounding."""
@@ -144,14 +125,30 @@ class Known:
             self.known.clear()
         self.instant, self.place, self.known[row.element] = row.time, (row.x, row.y), (row.nx, row.ny)
 
-    def surface(self, row: Row, curvature: float) -> Surface:
+    def surfaces(self, row: Row, curvature: float) -> list[Surface]:
+        """The surface that a row tells of; of a part about to move otherwise each that it may be."""
         ball, element = self.scene.ball, self.scene.elements[row.element]
         ax, ay = self.walk.acceleration
-        return Surface(
+        still = Surface(
             row.nx, row.ny, row.ux, row.uy, curvature, ax, ay,
             ball.b * element.b, ball.f * element.f, element.kick, element.kick_threshold,
             self.rolls_on == row.element,
         )  # fmt: skip
+        run = self.setting.runs.get(row.element)
+        if run is None:
+            return [still]
+        core = run.around(row.time, EXACT * row.time)
+        ex, ey = core.vx1 - core.vx0, core.vy1 - core.vy0
+        dx, dy = core.x1 - core.x0, core.y1 - core.y0
+        found = []
+        for k in range(3):
+            moves = bool(core.spin[k] or ex[k] or ey[k])
+            length = math.hypot(dx[k], dy[k])
+            spin = float(ey[k] * dx[k] - ex[k] * dy[k]) / length**2 if length else 0.0
+            size = run.radius + ball.radius + (length if moves or isinstance(run, Turning) else 0.0)
+            least = least_rebound(self.rules.rest_speed, math.hypot(ax, ay), spin, size)
+            found.append(still._replace(moves=moves, least=least))
+        return found
 
     def bearings(self, row: Row) -> list[Bearing]:
         """Everything that is touched when the ball comes with the velocity before the row."""
@@ -159,7 +156,7 @@ class Known:
 
     def touching(self, state: State) -> list[Bearing]:
         walk = self.walk
-        return self.touches.all_at(self.shapes, state, walk.enabled, walk.acceleration, self.known)
+        return self.touches.all_at(self.setting.shapes, state, walk.enabled, walk.acceleration, self.known)
 
     def is_over(self, index: int, bearings: Sequence[Bearing]) -> bool:
         """Whether the bounces at this instant end here, because they are soft or too many."""
@@ -196,9 +193,14 @@ class Known:
         slides = any(b.element == bearer.element and b.straight for b in bearings)
         return Mode.SLIDES if slides else Mode.RESTS
 
+    def at_instant(self, index: int) -> Iterator[Row]:
+        """The ball's earlier rows at the instant of a row, the latest first."""
+        time = self.rows[index].time
+        return takewhile(lambda row: row.time == time, reversed(self.rows[:index]))
+
     def is_last(self, index: int) -> bool:
         """Whether nothing more happens to the ball at this instant."""
-        later = (r for r in self.rows[index + 1 :] if r.kind in (BOUNCE, CONTACT_BEGINS, CONTACT_ENDS))
+        later = (r for r in self.rows[index + 1 :] if r.kind in (BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH))
         return next((r.time for r in later), math.inf) > self.rows[index].time
 
     def closes_no_more(self, index: int, row: Row) -> None:

@@ -10,6 +10,8 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+Vector = tuple[float, float]
+
 CLOSE = 1e-9  # share of the speed within which a comparison with a threshold may go either way
 HOP_ULPS = 16.0 * 2.0**-52  # of the scene's extent: a hop no higher than this is none
 ROLLING = 0.01  # of sqrt(press rho): the speed of the hops in which a ball rolls on a curve, at most
@@ -30,6 +32,8 @@ class Surface(NamedTuple):
     kick: float
     kick_threshold: float
     rolls: bool  # whether the ball's last bounce was a hop on it
+    moves: bool = False  # it is a part that turns or stretches
+    least: float = 0.0  # [m/s] the smallest rebound from it, if it is a part
 
 
 class Rules(NamedTuple):
@@ -71,6 +75,10 @@ def outcomes(s: Surface, rules: Rules, vx: float, vy: float, may_kick: bool, mus
 
 def _without_kick(s: Surface, rules: Rules, closing: float, along: float, near: float) -> Iterator[tuple[float, float]]:
     """Speeds away from the surface and along it."""
+    if s.moves and closing <= s.least + near:
+        yield max(s.b * closing, s.least), along if rules.rest_speed > 0.0 and s.f > 0.0 else s.f * along
+        if closing < s.least - near:
+            return
     press = pressing(s, along)
     scale = CLOSE * (math.hypot(s.ax, s.ay) + abs(s.curvature) * along * along)
     law = (s.b * closing, s.f * along)
@@ -91,6 +99,11 @@ def _without_kick(s: Surface, rules: Rules, closing: float, along: float, near: 
     else:
         for away in _off_curve(s, rules, closing, along, near, press):
             yield away, s.f * along
+
+
+def least_rebound(rest_speed: float, pull: float, spin: float, size: float) -> float:
+    """The smallest rebound [m/s] from what has no closed form for a contact: it keeps the bounces finite."""
+    return max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * size) * size))
 
 
 def is_friction(f: float, rules: Rules) -> bool:
@@ -127,16 +140,19 @@ def is_soft(rules: Rules, closing: float, press: float) -> bool:
 
 
 def _capped(s: Surface, rules: Rules, away: float, along: float, kicked: bool) -> Outcome:
-    """Back from the surface's frame to the world's, at no more than the greatest speed but never closing."""
+    """Back from the surface's frame to the world's, at no more than the greatest speed."""
     vx, vy = s.ux + away * s.nx - along * s.ny, s.uy + away * s.ny + along * s.nx
-    speed = math.hypot(vx, vy)
-    if speed <= rules.max_speed:
-        return Outcome(vx, vy, kicked)
-    share = rules.max_speed / speed
-    if (share * vx - s.ux) * s.nx + (share * vy - s.uy) * s.ny >= 0.0:
-        return Outcome(share * vx, share * vy, kicked)
-    normal = vx * s.nx + vy * s.ny
-    tangent = vy * s.nx - vx * s.ny
-    normal = min(normal, rules.max_speed)
-    tangent = math.copysign(math.sqrt(rules.max_speed**2 - normal**2), tangent)
-    return Outcome(normal * s.nx - tangent * s.ny, normal * s.ny + tangent * s.nx, kicked)
+    return Outcome(*capped((vx, vy), (s.nx, s.ny), (s.ux, s.uy), rules.max_speed), kicked)
+
+
+def capped(v: Vector, n: Vector, u: Vector, max_speed: float) -> Vector:
+    """A velocity shrunk to the greatest speed, but never so that it closes on what moves at `u`."""
+    speed = math.hypot(*v)
+    if speed <= max_speed:
+        return v
+    share = max_speed / speed
+    if (share * v[0] - u[0]) * n[0] + (share * v[1] - u[1]) * n[1] >= 0.0:
+        return share * v[0], share * v[1]
+    normal = min(v[0] * n[0] + v[1] * n[1], max_speed)
+    tangent = math.copysign(math.sqrt(max_speed**2 - normal**2), v[1] * n[0] - v[0] * n[1])
+    return normal * n[0] - tangent * n[1], normal * n[1] + tangent * n[0]

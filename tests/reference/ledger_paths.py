@@ -49,6 +49,7 @@ class Track(NamedTuple):
     vy: Floats
     ax: Floats
     ay: Floats
+    begin: Floats  # [s] since reset
 
     def of(self, rows: npt.NDArray[np.int64]) -> Track:
         return Track(*(column[rows] for column in self))
@@ -63,7 +64,7 @@ class Track(NamedTuple):
 
     def at(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions at times of shape (pieces, k)."""
-        x, y, vx, vy, ax, ay = (column[:, None] for column in self[1:])
+        x, y, vx, vy, ax, ay = (column[:, None] for column in self[1:7])
         return x + (vx + 0.5 * ax * t) * t, y + (vy + 0.5 * ay * t) * t
 
     def box(self) -> tuple[Floats, Floats, Floats, Floats]:
@@ -77,7 +78,7 @@ class Track(NamedTuple):
 
 
 def track_of(pieces: Sequence[Piece]) -> Track:
-    columns = np.array([piece[1:8] for piece in pieces], np.float64).reshape(-1, 7)
+    columns = np.array([(*piece[1:8], piece.begin) for piece in pieces], np.float64).reshape(-1, 8)
     return Track(*columns.T.copy())
 
 

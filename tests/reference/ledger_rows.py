@@ -8,10 +8,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from ledger_contact import Settling, after_contact, closing_on, hop, press_on, projections, settling
-from ledger_known import CONTACT_BEGINS, EXACT, TOLERANCE, Known, Row, Way, apart
+from ledger_contact import Settling, after_contact, along, closing_on, hop, press_on, projections, settling
+from ledger_known import Known, Way
 from ledger_law import Surface, outcomes, split
+from ledger_motion import Core
+from ledger_row import BOUNCE, CONTACT_BEGINS, Row, apart
 from ledger_sensors import Report, curve_of
+from ledger_setting import EXACT, TOLERANCE
 from ledger_shapes import direction
 from ledger_touch import ULP, Bearing, Own
 from ledger_walk import Bearer, Mode, State
@@ -33,7 +36,7 @@ class RowChecks(Known):
         if own is None:
             return
         scale = self.blur(row)
-        closing, _ = split(self.surface(row, 0.0), *row.before)
+        closing, _ = split(self.surfaces(row, 0.0)[0], *row.before)
         rival = self.touches.rival(index)
         if rival.which != row.element and rival.faster > scale:
             self.say(index, f"elements[{rival.which}] is closed on faster, by {rival.faster:.3g} m/s")
@@ -41,10 +44,15 @@ class RowChecks(Known):
             self.say(index, f"elements[{rival.first}] is closed on as fast, and comes first")
         self.closes_no_more(index, row)
         if closing <= scale:
-            hops = [hop(self.surface(row, curvature), self.rules, row.before) for curvature in own.curvatures]
+            hops = [hop(s, self.rules, row.before) for curvature in own.curvatures for s in self.surfaces(row, curvature)]
             if any(v is not None and apart(v, row.after) <= scale for v in hops):
-                self.rolls_on = row.element
+                self.rolls_on, self.hopped = row.element, row.time
                 return
+            off = [(row.vx0 + s.least * s.nx, row.vy0 + s.least * s.ny) for s in self.surfaces(row, 0.0) if s.least]
+            if any(apart(v, row.after) <= scale for v in off):  # pressed on a part and something else
+                self.hopped = row.time
+                return
+            hops += off
             if closing <= 0.0:
                 words = f"at {closing:.3g} m/s the ball does not close on elements[{row.element}]"
                 self.say(index, f"{words}, nor is it a hop to one of {hops}")
@@ -56,8 +64,7 @@ class RowChecks(Known):
         if self.rolls_on != row.element:
             self.rolls_on = -1
         lawful = []
-        for curvature in own.curvatures:
-            surface = self.surface(row, curvature)
+        for surface in (s for curvature in own.curvatures for s in self.surfaces(row, curvature)):
             lawful = list(self.lawful(row, surface))
             met = [kicked for v, kicked in lawful if apart(v, row.after) <= scale]
             if met and met[0]:
@@ -67,6 +74,8 @@ class RowChecks(Known):
             if met:
                 return
         ends = list(self.ends_of_corner(index, row, self.bearings(row)))
+        if self.hopped == row.time:  # what the hop closes on it leaves along
+            ends += [along(b, row.before) for b in self.bearings(row) if b.element == row.element]
         if all(apart(v, row.after) > scale for v in ends):
             self.say(index, f"the bounce leaves one of {[v for v, _ in lawful] + ends}, not {row.after}")
 
@@ -107,7 +116,7 @@ class RowChecks(Known):
         settles_at = self.walk.settles_at
         settled = settles_at < math.inf
         if settled and self.walk.bearer is not None and self.walk.bearer.element == row.element:
-            undisturbed = row.time not in self.commanded and not self.walk.pull.fields and not self.paddles
+            undisturbed = row.time not in self.setting.commanded and not self.walk.pull.fields and not self.setting.runs
             if abs(settles_at - row.time) > EXACT * settles_at and undisturbed:
                 self.say(index, f"the bounces end at {settles_at!r}, not at {row.time!r}")
         elif self.walk.bearer is not None and not settled:
@@ -151,12 +160,20 @@ class RowChecks(Known):
     def has_reason_to_end(self, index: int, row: Row, bearer: Bearer) -> bool:
         """Taken off or pushed off, not pressed any more, switched off, past the wall's end, taken over, or rolling."""
         vx, vy = row.after
-        leaving = (vx - bearer.ux) * bearer.nx + (vy - bearer.uy) * bearer.ny
-        off = not self.walk.enabled[row.element] or (row.time, False) in self.switches.get(row.element, [])
-        if leaving > self.blur(row) or off:
+        leaving = max((vx - ux) * bearer.nx + (vy - uy) * bearer.ny for ux, uy in ((bearer.ux, bearer.uy), (row.ux, row.uy)))
+        off = not self.walk.enabled[row.element] or (row.time, False) in self.setting.switches.get(row.element, [])
+        freed = row.time in self.setting.drive.freed.get(self.ball, [])
+        if leaving > 4.0 * ULP * (abs(vx) + abs(vy)) or off or freed:
             return True
         takes_over = self.rows[index + 1 : index + 2]
         if any(r.kind == CONTACT_BEGINS and r.time == row.time for r in takes_over):
+            return True
+        bounces = [r for r in takes_over if (r.kind, r.time) == (BOUNCE, row.time)]
+        if any(r.vx1 * bearer.nx + r.vy1 * bearer.ny > vx * bearer.nx + vy * bearer.ny for r in bounces):  # it hops off
+            return True
+        run = self.setting.runs.get(row.element)
+        core = None if run is None else run.around(row.time, EXACT * row.time)
+        if self.jammed == row.time or (core is not None and _deforms(core)):
             return True
         wall = self.scene.elements[row.element]
         ax, ay = self.walk.acceleration
@@ -165,9 +182,12 @@ class RowChecks(Known):
             return True
         if not isinstance(wall, Wall):
             return math.hypot(vx, vy) > self.blur(row)
-        ex, ey, length = direction(wall.start, wall.end)
-        at = (row.x - wall.start[0]) * ex + (row.y - wall.start[1]) * ey
-        rate = vx * ex + vy * ey or ax * ex + ay * ey
+        start, end = wall.start, wall.end
+        if core is not None:
+            start, end = (float(core.x0[1]), float(core.y0[1])), (float(core.x1[1]), float(core.y1[1]))
+        ex, ey, length = direction(start, end)
+        at = (row.x - start[0]) * ex + (row.y - start[1]) * ey
+        rate = (vx - row.ux) * ex + (vy - row.uy) * ey or ax * ex + ay * ey
         allowed = TOLERANCE * self.size
         return (at >= length - allowed and rate > 0.0) or (at <= allowed and rate < 0.0)
 
@@ -192,3 +212,8 @@ class RowChecks(Known):
             self.say(index, "a sensor changes no velocity and has none")
         self.reports.setdefault(row.element, []).append(Report(index, row.time, (row.nx, row.ny)))
         self.walk.out = sensor.drain
+
+
+def _deforms(core: Core) -> bool:
+    """Whether a part turns or stretches: then there is no contact with it."""
+    return bool(core.spin.any() or (core.vx0 != core.vx1).any() or (core.vy0 != core.vy1).any())

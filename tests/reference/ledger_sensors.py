@@ -11,9 +11,10 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
-from ledger_crossings import Circular, Straight, last_sides, passages
+from ledger_crossings import Circular, Curve, Straight, Swept, last_sides, passages
+from ledger_gaps import least_gaps
 from ledger_paths import Piece, Point, track_of
-from ledger_shapes import Bow, Line, Shapes, direction, least_gaps
+from ledger_shapes import Bow, Line, Shapes, direction
 
 from bounce_env.scene import Scene, Sensor
 
@@ -24,6 +25,7 @@ Switches = dict[int, list[tuple[float, bool]]]
 class Touched(Protocol):
     """What of a row tells on which side of its element the ball is."""
 
+    time: float
     element: int
     kind: int
     x: float
@@ -49,9 +51,18 @@ def curve_of(sensor: Sensor) -> Straight | Circular:
 
 
 class Whole:
-    """The whole path of a ball."""
+    """The whole path of a ball. `numbers`: those in the ledger of the rows at which pieces end."""
 
-    def __init__(self, scene: Scene, pieces: Sequence[Piece], switches: Switches, size: float, extent: float):
+    def __init__(
+        self,
+        scene: Scene,
+        pieces: Sequence[Piece],
+        switches: Switches,
+        size: float,
+        extent: float,
+        numbers: Sequence[int],
+    ):
+        self._numbers = numbers
         self._scene, self._pieces, self._switches = scene, pieces, switches
         self._track = track_of(pieces)
         self._begin = np.array([piece.begin for piece in pieces])
@@ -88,11 +99,11 @@ class Whole:
                 left.remove(fits[0])
             elif min(p.margin, p.depth) > self._allowed:
                 way = f"from {p.earliest:.9g} s to {p.latest:.9g} s"
-                yield f"before row {p.row}: the crossing of elements[{index}] {way} is not reported"
+                yield f"before row {self._numbers[p.row]}: the crossing of elements[{index}] {way} is not reported"
         last = self._pieces[-1]
         for r in left:
             if r.time < (last.begin + last.seconds) * (1.0 - 4.0 * ULP):  # at the path's end no side follows
-                yield f"row {r.row}: no crossing of elements[{index}] at {r.time:.9g} s"
+                yield f"row {self._numbers[r.row]}: no crossing of elements[{index}] at {r.time:.9g} s"
 
     def penetration(self, shapes: Shapes) -> Iterator[str]:
         """Places where the path goes deeper into an element than a billionth of the scene's size."""
@@ -100,46 +111,48 @@ class Whole:
         for feature in shapes.features:
             match feature:
                 case Line(one_way=True) | Line(reach=0.0):
-                    yield from self._through(feature.element, _curve_of(feature), feature.one_way)
+                    yield from self._through(feature.element, _curve_of(feature, shapes), feature.one_way)
                 case Bow(reach=0.0):
-                    yield from self._through(feature.element, _curve_of(feature), False)
+                    yield from self._through(feature.element, _curve_of(feature, shapes), False)
 
     def sides(self, shapes: Shapes, rows: Sequence[Touched]) -> Iterator[str]:
         """Rows in which a point is on another side of a wall or an arc than the one where it was last seen."""
         for feature in shapes.features:
             if feature.reach > 0.0 or (isinstance(feature, Line) and feature.one_way):
                 continue
-            curve = _curve_of(feature)
+            curve = _curve_of(feature, shapes)
             touched = [k for k, row in enumerate(rows) if row.element == feature.element and _has_side(row)]
             before = (-2, 0.0)
             seen = last_sides(curve, self._pieces, self._track, touched, self._noise)
             for k, (sight, side) in zip(touched, seen, strict=True):
-                nx, ny = curve.normal(rows[k].x, rows[k].y)
+                nx, ny = curve.normal(rows[k].x, rows[k].y, rows[k].time)
                 here = math.copysign(1.0, nx * rows[k].nx + ny * rows[k].ny)
                 if side == -here or before == (sight, -here):
-                    yield f"row {k}: the ball is on the other side of elements[{feature.element}]"
+                    yield f"row {self._numbers[k]}: the ball is on the other side of elements[{feature.element}]"
                 before = (sight, here)
 
     def _into_solids(self, shapes: Shapes) -> Iterator[str]:
-        for elements, pieces, gaps in least_gaps(shapes, self._scene, self._track, self._begin):
+        for elements, pieces, gaps in least_gaps(shapes, self._scene, self._track, self._allowed):
             for k in np.flatnonzero(gaps < -self._allowed):
                 piece = self._pieces[pieces[k]]
                 if self._on(elements[k])[pieces[k]]:
                     place = f"in elements[{elements[k]}] after {piece.begin:.9g} s"
-                    yield f"before row {piece.row}: {-gaps[k]:.3g} m deep {place}"
+                    yield f"before row {self._numbers[piece.row]}: {-gaps[k]:.3g} m deep {place}"
 
-    def _through(self, index: int, curve: Straight | Circular, one_way: bool) -> Iterator[str]:
+    def _through(self, index: int, curve: Curve, one_way: bool) -> Iterator[str]:
         for p in passages(curve, self._pieces, self._track, self._boxes, self._on(index), self._noise):
             if min(p.margin, p.depth) > self._allowed and not (one_way and p.upward):
                 way = f"from {p.earliest:.9g} s to {p.latest:.9g} s"
-                yield f"before row {p.row}: through elements[{index}] {way}"
+                yield f"before row {self._numbers[p.row]}: through elements[{index}] {way}"
 
 
 def _has_side(row: Touched) -> bool:
     return row.kind <= 2 and row.nx**2 + row.ny**2 > 0.5
 
 
-def _curve_of(feature: Line | Bow) -> Straight | Circular:
+def _curve_of(feature: Line | Bow, shapes: Shapes) -> Curve:
+    if feature.element in shapes.runs:
+        return Swept(shapes.runs[feature.element])
     if isinstance(feature, Bow):
         return Circular(feature.x, feature.y, feature.radius, feature.start, feature.span)
     return Straight(feature.x, feature.y, feature.ex, feature.ey, feature.length, feature.reach)

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from ledger_parts import PaddleRun
+from ledger_motion import PartRun
 from ledger_paths import Floats, Point, Track, to_arc, to_point, to_segment
 
 from bounce_env.scene import Arc, Bumper, Paddle, Scene, Wall
@@ -23,7 +23,10 @@ Ints = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Line:
-    """A straight face: of a wall (struck from the left only if one_way) or of a paddle's core."""
+    """A straight face: of a wall (struck from the left only if one_way) or of a part's core.
+
+    Of a part the place is told by its motion, see `Shapes.placed`: then x to length are arrays over times.
+    """
 
     element: int
     x: float
@@ -37,13 +40,14 @@ class Line:
 
 @dataclass(frozen=True)
 class Round:
-    """A circle struck from outside: a bumper, or the end of a wall, arc or paddle."""
+    """A circle struck from outside: a bumper, or the end of a wall, arc or part."""
 
     element: int
     x: float
     y: float
     reach: float
     owner: int  # of several elements that end at one point the first, which is the one that counts as struck
+    end: int = -1  # of a part: at which end of its core
 
 
 @dataclass(frozen=True)
@@ -81,16 +85,23 @@ def direction(a: Point, b: Point) -> tuple[float, float, float]:
 class Shapes:
     """What of a scene bounces a ball; features in the order of the elements."""
 
-    def __init__(self, scene: Scene, paddles: dict[int, PaddleRun]) -> None:
+    def __init__(self, scene: Scene, runs: dict[int, PartRun]) -> None:
         self.ball = scene.ball.radius
-        self.paddles = paddles
+        self.runs = runs
         self.features: list[Feature] = []
         self._owners: dict[Point, int] = {}
         for index, element in enumerate(scene.elements):
             self.features += self._features(index, element)
 
     def _features(self, index: int, element: object) -> Iterator[Feature]:
-        if isinstance(element, Wall):
+        if index in self.runs:
+            run = self.runs[index]
+            reach = run.radius + self.ball
+            if run.length > 0.0:
+                yield Line(index, 0.0, 0.0, 1.0, 0.0, run.length, reach)
+            if reach > 0.0:
+                yield from (Round(index, 0.0, 0.0, reach, index, end) for end in range(2 if run.length > 0.0 else 1))
+        elif isinstance(element, Wall):
             yield Line(index, *element.start, *direction(element.start, element.end), self.ball, element.one_way)
             if self.ball > 0.0 and not element.one_way:
                 yield self._end(index, *element.start)
@@ -104,25 +115,32 @@ class Shapes:
             if self.ball > 0.0 and not element.closed:
                 for angle in (start, element.end_angle):
                     yield Round(index, x + radius * math.cos(angle), y + radius * math.sin(angle), self.ball, index)
-        elif isinstance(element, Paddle):
-            ex, ey, _ = direction(element.rail_start, element.rail_end)
-            half, reach = element.half_width, element.radius + self.ball
-            # About the paddle's centre.
-            yield Line(index, -half * ex, -half * ey, ex, ey, 2.0 * half, reach)
-            yield Round(index, -half * ex, -half * ey, reach, index)
-            yield Round(index, half * ex, half * ey, reach, index)
 
     def _end(self, index: int, x: float, y: float) -> Round:
         return Round(index, x, y, self.ball, self._owners.setdefault((x, y), index))
+
+    def placed(self, feature: Feature, t: Floats, x: Floats, y: Floats) -> tuple[Feature, Floats, Floats]:
+        """A feature where it is at times t [s], and the velocity of its core next to (x, y) [m/s]."""
+        if feature.element not in self.runs:
+            return feature, np.zeros_like(t), np.zeros_like(t)
+        core = self.runs[feature.element].core(t)
+        if isinstance(feature, Round):
+            ends = (core.x0, core.y0, core.vx0, core.vy0), (core.x1, core.y1, core.vx1, core.vy1)
+            cx, cy, ux, uy = ends[feature.end]
+            return replace(feature, x=cx, y=cy), ux, uy
+        dx, dy = core.x1 - core.x0, core.y1 - core.y0
+        length = np.hypot(dx, dy)
+        along = ((x - core.x0) * dx + (y - core.y0) * dy) / length
+        ux, uy = core.surface(core.x0 + along * dx / length, core.y0 + along * dy / length)
+        return replace(feature, x=core.x0, y=core.y0, ex=dx / length, ey=dy / length, length=length), ux, uy
 
     def touching(self, feature: Feature, t: Floats, x: Floats, y: Floats, vx: Floats, vy: Floats) -> Touching:
         """Balls at (x, y) at times t [s] against a feature.
 
         (vx, vy) tells on which side a point is that lies on a line: the one from which it comes.
         """
-        if feature.element in self.paddles:
-            cx, cy, ux, uy = self.paddles[feature.element].states(t)
-            x, y, vx, vy = x - cx, y - cy, vx - ux, vy - uy
+        feature, ux, uy = self.placed(feature, t, x, y)
+        vx, vy = vx - ux, vy - uy
         x, y = x - feature.x, y - feature.y
         if isinstance(feature, Line):
             return _touching_line(feature, x, y, vx, vy)
@@ -160,74 +178,3 @@ def _bow_margin(bow: Bow, x: Floats, y: Floats) -> Floats:
     angle = np.mod(np.arctan2(y, x) - bow.start, 2.0 * math.pi)
     beyond = np.where(angle <= bow.span, angle, np.maximum(bow.span - angle, angle - 2.0 * math.pi))
     return bow.radius * np.minimum(beyond, bow.span - beyond)
-
-
-class Gaps(NamedTuple):
-    """Least gaps [m] of pieces of a path to elements, one entry a pair of them."""
-
-    element: Ints
-    piece: Ints
-    gap: Floats
-
-
-def least_gaps(shapes: Shapes, scene: Scene, track: Track, begin: Floats) -> Iterator[Gaps]:
-    """For every element with a thickness, the pieces of the path that come near it.
-
-    Without those that only direction or side can tell: a point's walls and arcs, and one-way walls.
-    """
-    left, below, right, above = track.box()
-    points: list[tuple[Ints, Ints, Track, float]] = []  # elements, pieces, paths seen from the centre, reach
-    segments: list[tuple[Ints, Ints, Track, float, tuple[float, float, float]]] = []
-    for index, element in enumerate(scene.elements):
-        if not isinstance(element, Wall | Bumper | Arc | Paddle):
-            continue
-        reach = shapes.ball + (element.radius if isinstance(element, Bumper | Paddle) else 0.0)
-        if reach == 0.0 or (isinstance(element, Wall) and element.one_way):
-            continue
-        x0, y0, x1, y1 = element.bounds
-        pad = 1.01 * reach
-        near = np.flatnonzero((left < x1 + pad) & (right > x0 - pad) & (below < y1 + pad) & (above > y0 - pad))
-        if not near.size:
-            continue
-        which, seen = np.full(near.shape, index), track.of(near)
-        match element:
-            case Bumper():
-                points.append((which, near, seen.relative_to(*element.center), reach))
-            case Arc():
-                span = 2.0 * math.pi if element.closed else element.end_angle - element.start_angle
-                seen = seen.relative_to(*element.center)
-                yield Gaps(which, near, to_arc(seen, element.radius, element.start_angle, span) - reach)
-            case Wall():
-                way = direction(element.start, element.end)
-                segments.append((which, near, seen.relative_to(*element.start), reach, way))
-            case Paddle():
-                seen = _seen_from_paddle(shapes.paddles[index], element, seen, begin[near])
-                ex, ey, _ = direction(element.rail_start, element.rail_end)
-                segments.append((which, near, seen, reach, (ex, ey, 2.0 * element.half_width)))
-    if points:
-        elements, pieces, seen_, reaches = zip(*points, strict=True)
-        yield Gaps(*_joined(elements, pieces), to_point(_stacked(seen_)) - _spread(pieces, reaches))
-    if segments:
-        elements, pieces, seen_, reaches, ways = zip(*segments, strict=True)
-        ex_, ey_, length = (_spread(pieces, column) for column in zip(*ways, strict=True))
-        yield Gaps(*_joined(elements, pieces), to_segment(_stacked(seen_), ex_, ey_, length) - _spread(pieces, reaches))
-
-
-def _joined(elements: Sequence[Ints], pieces: Sequence[Ints]) -> tuple[Ints, Ints]:
-    return np.concatenate(elements), np.concatenate(pieces)
-
-
-def _stacked(tracks: Sequence[Track]) -> Track:
-    return Track(*(np.concatenate(columns) for columns in zip(*tracks, strict=True)))
-
-
-def _spread(pieces: Sequence[Ints], values: Sequence[float]) -> Floats:
-    return np.repeat(np.array(values), [len(each) for each in pieces])
-
-
-def _seen_from_paddle(run: PaddleRun, paddle: Paddle, track: Track, begin: Floats) -> Track:
-    """The path as seen from the start of the paddle's core; no piece outlasts a change of the paddle's velocity."""
-    ex, ey, _ = direction(paddle.rail_start, paddle.rail_end)
-    half = 0.5 * track.seconds
-    cx, cy, ux, uy = run.states(begin + half)
-    return track.relative_to(cx - ux * half - paddle.half_width * ex, cy - uy * half - paddle.half_width * ey, ux, uy)

@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from ledger_parts import PaddleRun
+from ledger_motion import PartRun
 from ledger_paths import Floats
+from ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH
 from ledger_shapes import Feature, Line, Round, Shapes
 from ledger_walk import State
 
@@ -45,6 +46,7 @@ class Bearing(NamedTuple):
     uy: float
     curvature: float
     straight: bool  # a wall's face
+    moves: bool = False  # it turns or stretches
 
 
 class Rival(NamedTuple):
@@ -69,7 +71,7 @@ class Touches:
     ):
         """`started`: times at which the ball is given a velocity, so that this does not tell from where it came."""
         self._slack = TOUCHING * extent
-        self._rows = np.flatnonzero(np.isin(ledger["kind"], (0, 1, 2)))
+        self._rows = np.flatnonzero(np.isin(ledger["kind"], (BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH)))
         table = ledger[self._rows]
         count = len(table)
         self._place = {int(row): k for k, row in enumerate(self._rows)}
@@ -97,8 +99,12 @@ class Touches:
         fastest, closing = float(self._fastest[k] - self._own[k]), float(self._after[k])
         return Rival(fastest, int(self._which[k]), int(self._tied[k]), closing)
 
-    def all_at(self, shapes: Shapes, state: State, on: Sequence[bool], pull: Vector, known: Normals) -> list[Bearing]:
-        """Everything that a ball touches. `known`: elements of which the side is known, with their normals.
+    def all_at(
+        self, shapes: Shapes, state: State, on: Sequence[bool], pull: Vector, known: Normals, room: float = 0.0
+    ) -> list[Bearing]:
+        """Everything that a ball touches, or has no more than `room` [m] to.
+
+        `known`: elements of which the side is known, with their normals.
 
         Of other lines that a point lies on, its side is the one from which it comes, or from which it is pressed on.
         """
@@ -106,10 +112,9 @@ class Touches:
         place = [np.array([value]) for value in state]
         for feature in shapes.features:
             touch = shapes.touching(feature, *place)
-            if not on[feature.element] or abs(touch.gap[0]) > self._slack or touch.margin[0] < -self._slack:
+            slack = self._slack + room
+            if not on[feature.element] or abs(touch.gap[0]) > slack or touch.margin[0] < -slack:
                 continue
-            paddle = shapes.paddles.get(feature.element)
-            ux, uy = (0.0, 0.0) if paddle is None else (float(u[0]) for u in paddle.states(place[0])[2:])
             nx, ny, curvature = float(touch.nx[0]), float(touch.ny[0]), float(touch.curvature[0])
             if feature.reach == 0.0 and not (isinstance(feature, Line) and feature.one_way):
                 slow = 1e-9 * math.hypot(state.vx, state.vy)
@@ -117,7 +122,12 @@ class Touches:
                 out = known.get(feature.element, (-way[0], -way[1]))
                 if out[0] * nx + out[1] * ny < 0.0:
                     nx, ny, curvature = -nx, -ny, -curvature
-            found.append(Bearing(feature.element, nx, ny, ux, uy, curvature, isinstance(feature, Line)))
+            run, ux, uy, moves = shapes.runs.get(feature.element), 0.0, 0.0, False
+            if run is not None:
+                at = (state.x - shapes.ball * nx, state.y - shapes.ball * ny)
+                ux, uy = (float(u[0]) for u in run.core(place[0]).surface(*map(np.array, at)))
+                moves = bool(run.moves(place[0])[0])
+            found.append(Bearing(feature.element, nx, ny, ux, uy, curvature, isinstance(feature, Line), moves))
         return found
 
     def _add(
@@ -134,10 +144,11 @@ class Touches:
         self._take_own(mine & (touch.margin >= -1e-9 * extent), touch.gap, nx, ny, curvature, owner, extent)
         sure = (np.abs(touch.gap) <= SURELY * extent) & (touch.margin >= 0.0) & ~_unsure(t, switched)
         ux, uy = np.zeros_like(t), np.zeros_like(t)
-        if feature.element in shapes.paddles:
-            paddle = shapes.paddles[feature.element]
-            _, _, ux, uy = paddle.states(t)
-            sure &= ~_at_change(paddle, t)
+        if feature.element in shapes.runs:
+            run = shapes.runs[feature.element]
+            ux, uy = run.core(t).surface(table["x"] - shapes.ball * nx, table["y"] - shapes.ball * ny)
+            # Where it is by then is known as well as the instant.
+            sure &= ~_at_change(run, t) & (np.hypot(ux, uy) * t * ULP <= SURELY * extent)
         vx, vy = self._arrived
         if feature.reach == 0.0 or (isinstance(feature, Line) and feature.one_way):
             speed = np.hypot(vx, vy)
@@ -196,8 +207,8 @@ def _unsure(t: Floats, switched: list[tuple[float, bool]]) -> npt.NDArray[np.boo
     return off
 
 
-def _at_change(paddle: PaddleRun, t: Floats) -> npt.NDArray[np.bool_]:
+def _at_change(run: PartRun, t: Floats) -> npt.NDArray[np.bool_]:
     near = np.zeros(t.shape, bool)
-    for time in paddle.changes:
+    for time in run.changes:
         near |= np.abs(t - time) <= 1e-9 * (1.0 + time)
     return near

@@ -6,20 +6,17 @@ Of the ledger checker: plain Python, no code of the engine.
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from enum import Enum, auto
 from typing import NamedTuple
 
+from ledger_drive import Command, is_command
 from ledger_paths import Piece, Pull
 
 from bounce_env.scene import Field, Scene
 
-Value = float | bool | tuple[float, float]
-Command = tuple[float, str, Value]
-"""(time since reset [s], name, value): speed of a paddle [m/s], True or False for `enable`, (dvx, dvy) for a push."""
-
 LONGEST = 10_000  # pieces of one flight: no ball passes more borders of fields than that between two events
-PRESSING = 1e-12  # share of the acceleration below which a wall is not pressed
 
 
 class State(NamedTuple):
@@ -34,6 +31,7 @@ class Mode(Enum):
     FLIES = auto()
     SLIDES = auto()  # along a wall, under what the wall leaves of the acceleration
     RESTS = auto()
+    STANDS = auto()  # between other balls, for a while
     SETTLES = auto()  # is shown in uniform motion along a wall while its last small bounces go on
 
 
@@ -66,6 +64,7 @@ class Walk:
         self.mode = Mode.FLIES
         self.bearer: Bearer | None = None
         self.settles_at = math.inf
+        self.stands_until = math.inf
         self.out = False
         self.waiting = tuple(sorted(commands, key=lambda command: command[0]))
         self.unpressed = False  # whether it slid where nothing pressed it on the wall, since `place`
@@ -80,9 +79,20 @@ class Walk:
         on = [e for e, on in zip(self._scene.elements, self.enabled, strict=True) if on and isinstance(e, Field)]
         self.pull = Pull(self._scene.gravity, on)
 
-    def place(self, state: State, mode: Mode, bearer: Bearer | None, settles_at: float = math.inf) -> None:
-        """Go on from here; `settles_at`: when the contact with the bearer begins, if it has not."""
+    def place(
+        self,
+        state: State,
+        mode: Mode,
+        bearer: Bearer | None,
+        settles_at: float = math.inf,
+        stands_until: float = math.inf,
+    ) -> None:
+        """Go on from here.
+
+        settles_at: when the contact with the bearer begins, if it has not. stands_until: when it flies, if it stands.
+        """
         self.state, self.mode, self.bearer, self.settles_at = state, mode, bearer, settles_at
+        self.stands_until = stands_until
         self.unpressed = False
 
     def mark(self) -> Mark:
@@ -116,14 +126,17 @@ class Walk:
             return False
         self.waiting = self.waiting[len(due) :]
         # Drag acts at the commands of parts.
-        share = self._scene.drag if any(type(value) is float for _, _, value in due) else 1.0
+        to_parts = [is_command(self._scene, name, value) for _, name, value in due]
+        share = self._scene.drag if any(to_parts) else 1.0
         vx, vy = share * self.state.vx, share * self.state.vy
         enabled = list(self.enabled)
-        for _, name, value in due:
+        for (_, name, value), to_part in zip(due, to_parts, strict=True):
+            if to_part:
+                continue
             if isinstance(value, bool):
                 enabled[self._names[name]] = value
-            elif isinstance(value, tuple):
-                vx, vy = vx + value[0], vy + value[1]
+            else:
+                vx, vy = vx + value[0], vy + value[1]  # type: ignore[index, operator]
         self.enabled = tuple(enabled)
         self._take_fields()
         self.state = self.state._replace(vx=vx, vy=vy)
@@ -132,10 +145,12 @@ class Walk:
         return True
 
     def _move(self, until: float, row: int) -> None:
-        for cut in self._cuts:
-            if self.state.time < cut < until:
-                self._go(cut, row)
-        self._go(until, row)
+        first = bisect_right(self._cuts, self.state.time)
+        for cut in (*self._cuts[first : bisect_left(self._cuts, until)], until):
+            if self.mode is Mode.STANDS and self.stands_until < cut:
+                self._go(max(self.stands_until, self.state.time), row)
+                self.mode = Mode.FLIES
+            self._go(cut, row)
 
     def _go(self, until: float, row: int) -> None:
         """In pieces of constant acceleration, from border to border of the fields."""
@@ -151,7 +166,7 @@ class Walk:
             last = seconds >= until - s.time
             if self.bearer is not None and self.mode is not Mode.RESTS and seconds > 0.0:
                 into = ax * self.bearer.nx + ay * self.bearer.ny
-                self.unpressed |= into >= -PRESSING * math.hypot(ax, ay)
+                self.unpressed |= into >= 0.0  # however little it is pressed, the wall bears it
             if self.mode is Mode.RESTS and self.bearer is not None:
                 s = s._replace(vx=self.bearer.ux, vy=self.bearer.uy)
             piece = Piece(s.time, seconds, s.x, s.y, s.vx, s.vy, *self._borne(ax, ay), element, row)
@@ -182,9 +197,16 @@ class Walk:
 
     def _borne(self, ax: float, ay: float) -> tuple[float, float]:
         """The acceleration that is left to the ball."""
-        if self.mode is Mode.FLIES or self.bearer is None:
-            return ax, ay
-        if self.mode is not Mode.SLIDES:
+        return self.borne_by(self.mode, self.bearer, ax, ay)
+
+    @staticmethod
+    def borne_by(mode: Mode, bearer: Bearer | None, ax: float, ay: float) -> tuple[float, float]:
+        """What an acceleration leaves to a ball that does so."""
+        if mode is Mode.STANDS:
             return 0.0, 0.0
-        into = ax * self.bearer.nx + ay * self.bearer.ny
-        return ax - into * self.bearer.nx, ay - into * self.bearer.ny
+        if mode is Mode.FLIES or bearer is None:
+            return ax, ay
+        if mode is not Mode.SLIDES:
+            return 0.0, 0.0
+        into = ax * bearer.nx + ay * bearer.ny
+        return ax - into * bearer.nx, ay - into * bearer.ny

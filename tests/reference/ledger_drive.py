@@ -1,0 +1,238 @@
+"""How parts move under commands, stops and crushed balls, and whether the ledger tells of all their stops.
+
+Of the ledger checker: plain Python and numpy, no code of the engine. Commands, and the rows of stops (kind 4) and of
+crushed balls (kind 5), are gone through in order of time. A stop must be reported when the motion comes to it; a part
+that stops elsewhere must have been blocked by a ball that is crushed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from ledger_motion import Halt, PartRun, Vector, runs_of
+from ledger_row import CRUSH, PART_STOPS, Row, apart
+
+from bounce_env.scene import Flipper, Scene, Wall
+
+Value = float | bool | tuple[float, float] | tuple[Vector, Vector]
+Command = tuple[float, str, Value]
+"""(time since reset [s], name, value): as `World.command` has it for a part, but that of a paddle or a bumper is a
+float; True or False for `enable` of what is no flipper; (dvx, dvy) and any name for a push."""
+
+EXACT = 1e-12  # what one formula may lose
+CLEARANCE = 2.0**-14  # of the extent: as far from a part that sets off a crushed ball is held or freed, twice
+
+
+class Crushed(NamedTuple):
+    """A ball that is held between a part and something else."""
+
+    x: float
+    y: float
+    part: int
+
+
+def is_command(scene: Scene, name: str, value: Value) -> bool:
+    """Whether a command is one to a part, and not a push or a switch."""
+    element = next((e for e in scene.elements if name and e.name == name), None)
+    if isinstance(value, bool):
+        return isinstance(element, Flipper)
+    return isinstance(value, float) or (isinstance(element, Wall) and isinstance(value[0], tuple))
+
+
+class Drive:
+    """The runs of all parts by element, what is wrong with the ledger about them, and when crushed balls are freed."""
+
+    def __init__(
+        self, scene: Scene, rows: Sequence[Row], commands: Sequence[Command], end: float, extent: float, size: float
+    ) -> None:
+        self.runs = runs_of(scene, extent)
+        self.problems: list[str] = []
+        self.freed: dict[int, list[float]] = {}
+        self.crushed: dict[int, Crushed] = {}
+        self._scene, self._rows, self._extent, self._allowed = scene, rows, extent, 1e-9 * size
+        self._reach = scene.ball.radius
+        self._names = {element.name: index for index, element in enumerate(scene.elements) if element.name}
+        self._waiting = sorted(commands, key=lambda command: command[0])
+        numbers = [k for k, row in enumerate(rows) if row.kind in (PART_STOPS, CRUSH)]
+        while numbers:
+            time = rows[numbers[0]].time
+            while self._waiting and self._waiting[0][0] < time:
+                self._tell()
+            self._come_to(time * (1.0 - EXACT))
+            if not self._is_before_commands(numbers[0]):
+                while self._waiting and self._waiting[0][0] == time:
+                    self._tell()
+            del numbers[: self._take(numbers)]
+        while self._waiting and self._waiting[0][0] <= end:
+            self._tell()
+        self._come_to(end * (1.0 - EXACT))
+
+    def _say(self, number: int, words: str) -> None:
+        self.problems.append(f"row {number}: {words}")
+
+    # ---- commands
+
+    def _tell(self) -> None:
+        """Let the next command act."""
+        time, name, value = self._waiting.pop(0)
+        self._come_to(time * (1.0 - EXACT))
+        index = self._names.get(name, -1)
+        if not is_command(self._scene, name, value):
+            if isinstance(value, bool):  # switching may open any gap
+                for ball in list(self.crushed):
+                    self._free(time, ball, -1)
+            return
+        run, rates = self.runs[index], self._rates_of(index, value)
+        if rates != run.asked:
+            run.asked = rates
+            self._set_off(time, run)
+            self._mind_crushed(time, index, run)
+
+    def _rates_of(self, index: int, value: Value) -> tuple[float, ...]:
+        element = self._scene.elements[index]
+        if isinstance(element, Flipper):
+            return (element.up_speed if value else -element.down_speed,)
+        if isinstance(value, tuple):
+            (vx0, vy0), (vx1, vy1) = value  # type: ignore[misc]
+            return vx0, vy0, vx1, vy1
+        return (float(value),)
+
+    def _set_off(self, time: float, run: PartRun) -> None:
+        halt, at = run.halt(), run.legs[-1].now(time)
+        if halt.time <= time * (1.0 + EXACT):  # within rounding it is there, whether or not that has been reported
+            at = halt.at
+        run.go(time, at, run.asked)
+
+    def _mind_crushed(self, time: float, index: int, run: PartRun) -> None:
+        """A part may not close on a crushed ball, and frees those that it moves away from."""
+        for ball, place in list(self.crushed.items()):
+            gap, closing = self._towards(time, run, place.x, place.y)
+            if gap > 2.0 * CLEARANCE * self._extent:
+                continue
+            if closing > 0.0:
+                run.go(time, run.legs[-1].at, tuple(0.0 for _ in run.asked))
+            elif closing < 0.0:
+                self._free(time, ball, index)
+
+    def _towards(self, time: float, run: PartRun, x: float, y: float) -> tuple[float, float]:
+        """The gap [m] between a part and a ball, and how fast the part closes it [m/s]."""
+        core = run.core(np.array([time]))
+        ax, ay, dx, dy = core.x0[0], core.y0[0], core.x1[0] - core.x0[0], core.y1[0] - core.y0[0]
+        square = dx * dx + dy * dy
+        share = min(max(((x - ax) * dx + (y - ay) * dy) / square, 0.0), 1.0) if square else 0.0
+        px, py = ax + share * dx, ay + share * dy
+        away = math.hypot(x - px, y - py)
+        vx = core.vx0[0] + share * (core.vx1[0] - core.vx0[0])
+        vy = core.vy0[0] + share * (core.vy1[0] - core.vy0[0])
+        closing = (vx * (x - px) + vy * (y - py)) / away if away else math.inf
+        return float(away - run.radius - self._reach), float(closing)
+
+    def _free(self, time: float, ball: int, by: int) -> None:
+        part = self.crushed.pop(ball).part
+        self.freed.setdefault(ball, []).append(time)
+        if part not in (by, -1):
+            self._set_off(time, self.runs[part])
+
+    # ---- stops
+
+    def _come_to(self, time: float) -> None:
+        """Let the stops before a time happen that the ledger says nothing of."""
+        for index, run in self.runs.items():
+            while (halt := run.halt()).time < time:
+                self.problems.append(f"elements[{index}] stops at {halt.time!r}, which is not reported")
+                self._halt(run, halt)
+
+    def _halt(self, run: PartRun, halt: Halt) -> None:
+        time, at, rates = halt
+        run.go(time, at, rates)
+        if run.turns_back:  # it goes on as if it had been told so
+            run.asked = rates
+
+    def _is_before_commands(self, number: int) -> bool:
+        """Whether what a row tells came before the commands of its instant."""
+        row = self._rows[number]
+        if row.kind == CRUSH:
+            row = next((r for r in self._rows[number + 1 :] if r.kind == PART_STOPS), row)
+        run = self.runs.get(row.element)
+        if run is None or self._is_due(run, row.time):
+            return True
+        _, _, vx, vy = run.places(run.core(np.array([row.time])))[0]
+        return apart((vx, vy), row.before) <= EXACT * math.hypot(vx, vy)
+
+    def _is_due(self, run: PartRun, time: float) -> bool:
+        return abs(run.halt().time - time) <= EXACT * time
+
+    def _take(self, numbers: Sequence[int]) -> int:
+        """Let happen what the next of these rows tells; returns how many of them that took."""
+        number = numbers[0]
+        row = self._rows[number]
+        if row.kind == CRUSH:
+            self._crush(number, row, self._rows[numbers[1]] if len(numbers) > 1 else None)
+            return 1
+        run = self.runs.get(row.element)
+        if run is None:
+            self._say(number, f"elements[{row.element}] is no part")
+            return 1
+        halt = run.halt()
+        if not self._is_due(run, row.time):
+            at = run.legs[-1].now(row.time)
+            halt = Halt(row.time, at, run.blocked_rates())
+            if not self._is_blocked(number, row, run):
+                self._say(number, f"nothing stops elements[{row.element}] before {run.halt().time!r}")
+        before = run.places(run.core_once(halt.at, run.legs[-1].rates))
+        self._halt(run, halt)
+        after = run.places(run.core_once(halt.at, run.legs[-1].rates))
+        for k, (old, new) in enumerate(zip(before, after, strict=True)):
+            if k >= len(numbers):
+                self._say(number, f"elements[{row.element}] has two ends, of which but one stops")
+                break
+            self._compare(numbers[k], row.element, halt.time, old, new)
+        return len(before)
+
+    def _compare(
+        self, number: int, element: int, time: float, old: tuple[float, ...], new: tuple[float, ...]
+    ) -> None:
+        """All of a stop's row against what follows from the motion."""
+        row = self._rows[number]
+        if (row.kind, row.element) != (PART_STOPS, element):
+            self._say(number, f"here the other end of elements[{element}] stops")
+        derived = (time, *old, *new[2:], 0.0, 0.0, 0.0, 0.0)
+        seen = (row.time, row.x, row.y, *row.before, *row.after, row.nx, row.ny, row.ux, row.uy)
+        speed = max(math.hypot(*old[2:]), math.hypot(*new[2:]))
+        far = self._extent + speed * time  # the instant's rounding, over the part's speed, moves its place
+        scales = (time, far, far, *[speed] * 4, 0.0, 0.0, 0.0, 0.0)
+        if any(abs(a - b) > EXACT * scale for a, b, scale in zip(derived, seen, scales, strict=True)):
+            self._say(number, f"elements[{element}] stops so: {derived}")
+
+    # ---- balls that are crushed
+
+    def _crush(self, number: int, row: Row, stop: Row | None) -> None:
+        run = self.runs.get(row.element)
+        if run is None:
+            self._say(number, f"elements[{row.element}] is no part that could crush a ball")
+            return
+        self.crushed[row.ball] = Crushed(row.x, row.y, row.element)
+        if stop is None or (stop.kind, stop.element, stop.time) != (PART_STOPS, row.element, row.time):
+            self._say(number, f"elements[{row.element}] does not stop when it crushes a ball")
+        if not row.ux * row.nx + row.uy * row.ny > 0.0:
+            self._say(number, f"elements[{row.element}] does not close on the ball that it is to crush")
+
+    def _is_blocked(self, number: int, row: Row, run: PartRun) -> bool:
+        """Whether a ball blocks a part: one that is crushed, or that a bumper on a rail closes on and turns back from."""
+        return any(
+            abs(gap) <= self._allowed and closing > 0.0
+            for gap, closing in (self._towards(row.time, run, x, y) for x, y in self._balls_at(number, row, run))
+        )
+
+    def _balls_at(self, number: int, row: Row, run: PartRun) -> Iterator[Vector]:
+        yield from ((c.x, c.y) for c in self.crushed.values())
+        if run.turns_back:
+            for other in reversed(self._rows[:number]):
+                if other.time < row.time:
+                    return
+                yield other.x, other.y
+
+

@@ -199,6 +199,8 @@ class _Check(PairChecks):
         if apart((derived.x, derived.y), (seen.x, seen.y)) > length:
             return f"the ball comes to {(derived.x, derived.y)}, not to {(seen.x, seen.y)}"
         faster = STANDING + TOLERANCE * speed + math.hypot(*pull) * lost
+        if seen.time == self.instant:  # what is left of faster bounces
+            faster += EXACT * self.fastest
         if apart((derived.vx, derived.vy), (seen.vx, seen.vy)) > faster:
             return f"the ball comes with {(derived.vx, derived.vy)}, not with {(seen.vx, seen.vy)}"
         return ""

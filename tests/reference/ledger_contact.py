@@ -13,6 +13,7 @@ from typing import NamedTuple
 from ledger_law import Rules, Surface, is_friction, is_soft, pressing, rolling_speed, split
 from ledger_touch import Bearing, Vector
 
+PRESSING = 2.0**-40  # share of the acceleration: pressed less than this, friction holds nothing
 ALIGNED = 1e-9  # by how much the normals that carry a ball may miss the direction of what they carry
 CORNER = 64.0  # times as high as a hop that is none: so much is none between several surfaces
 SWING, BALANCE = 1e-3, 1e-4  # of sqrt(pull rho): the speeds at which a ball rests in a hollow, and on top of a curve
@@ -139,11 +140,15 @@ def after_contact(
     """The velocities that a ball may have in contact with a surface, if it comes to it with `v`."""
     if bearing.moves:
         return
-    pressed = press_on(bearing, v, a) > 0.0
-    rests = pressed and (is_friction(f, rules) or swings_out(bearing, v, a, rules))
-    if rests or (is_standing(v, a, rules) and is_carried(a, bearings)):
+    press = press_on(bearing, v, a)
+    pressed = press > 0.0
+    held = is_friction(f, rules) and press > PRESSING * (abs(a[0]) + abs(a[1]))
+    rests = pressed and (held or swings_out(bearing, v, a, rules))
+    stands = rests or (is_standing(v, a, rules) and is_carried(a, bearings))
+    if stands:
         yield bearing.ux, bearing.uy
-    elif pressed and bearing.straight:
+    # Where something else moves into the ball, nothing holds it.
+    if pressed and bearing.straight and (not stands or any(b.ux or b.uy for b in bearings)):
         yield along(bearing, v)
 
 

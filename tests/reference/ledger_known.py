@@ -11,7 +11,7 @@ from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
-from ledger_contact import is_carried, is_over
+from ledger_contact import PRESSING, is_carried, is_over
 from ledger_law import Surface, is_friction, least_rebound
 from ledger_motion import Turning
 from ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH, Row, apart
@@ -172,6 +172,8 @@ class Known:
 
     def goes_on(self, row: Row) -> None:
         """From here the ball goes on as before: in flight, or in the contact that it is in."""
+        if self.walk.settles_at < math.inf:  # the contact to which it settled never began
+            self.walk.settles_at, self.walk.bearer = math.inf, None
         state, bearer = State(row.time, row.x, row.y, *row.after), self.walk.bearer
         mode = Mode.FLIES
         if bearer is not None:
@@ -185,7 +187,9 @@ class Known:
     def mode_on(self, bearer: Bearer, state: State) -> Mode:
         """What a ball does that is in contact with an element."""
         f = self.scene.ball.f * self.scene.elements[bearer.element].f
-        if is_friction(f, self.rules):
+        ax, ay = self.walk.acceleration
+        press = -(ax * bearer.nx + ay * bearer.ny)
+        if is_friction(f, self.rules) and press > PRESSING * (abs(ax) + abs(ay)):
             return Mode.RESTS
         bearings = self.touching(state)
         if state.vx == state.vy == 0.0 and is_carried(self.walk.acceleration, bearings):

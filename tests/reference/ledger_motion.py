@@ -86,6 +86,10 @@ class PartRun:
     def allowed(self, at: tuple[float, ...], rates: tuple[float, ...]) -> tuple[float, ...]:
         raise NotImplementedError
 
+    def held_at_once(self) -> tuple[float, ...]:
+        """The rates with which the part has been told to move, where it may do so for no more than rounding."""
+        return self.legs[-1].rates
+
     def halt(self) -> Halt:
         """The next stop, at time inf where there is none."""
         raise NotImplementedError
@@ -220,11 +224,18 @@ class Dragged(PartRun):
         super().__init__((*part.start, *part.end), (0.0,) * 4)
 
     def allowed(self, at: tuple[float, ...], rates: tuple[float, ...]) -> tuple[float, ...]:
-        rates = tuple(
+        rates = self._inside(at, rates)
+        return (0.0,) * 4 if self._narrows_in(at, rates) == 0.0 else rates
+
+    def _inside(self, at: tuple[float, ...], rates: tuple[float, ...]) -> tuple[float, ...]:
+        """The rates without those of coordinates that are at the border of the box."""
+        return tuple(
             0.0 if (a - low <= self._slack and r < 0.0) or (high - a <= self._slack and r > 0.0) else r
             for a, r, low, high in zip(at, rates, self._low, self._high, strict=True)
         )
-        return (0.0,) * 4 if self._narrows_in(at, rates) == 0.0 else rates
+
+    def held_at_once(self) -> tuple[float, ...]:
+        return self._inside(self.legs[-1].at, self.asked)
 
     def _narrows_in(self, at: tuple[float, ...], rates: tuple[float, ...]) -> float:
         """For how long [s] the ends come closer to each other, until they may not."""

@@ -6,7 +6,7 @@ Of the ledger checker: plain Python and numpy, no code of the engine.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from ledger_contact import closing_on
 from ledger_known import Way
@@ -26,6 +26,7 @@ class PairChecks(RowChecks):
     """The checks of a ball's rows with other balls; `others` are the checks of all balls."""
 
     others: Sequence[PairChecks]
+    pressed: Collection[bool] = (False,)  # whether the two balls of the last hit may have been pressed together
 
     def meets(self, index: int, row: Row) -> None:
         """A hit has two rows, one after the other; a ball that is stopped between others has one."""
@@ -41,7 +42,7 @@ class PairChecks(RowChecks):
         if (row.ux, row.uy) != mate.before:
             self.say(index, f"the other ball comes with {mate.before}, not with {(row.ux, row.uy)}")
         self._touches_ball(index, row, (mate.x, mate.y))
-        lawful = list(self._exchanges(row, other))
+        lawful = list(self._exchanges(self.numbers[index], row, other))
         blur = max(self.blur(row), other.blur(mate))
         if all(apart(v, row.after) > blur for v in lawful):
             self.say(index, f"the hit leaves one of {lawful}, not {row.after}")
@@ -73,11 +74,14 @@ class PairChecks(RowChecks):
         if not distance or apart((dx / distance, dy / distance), (row.nx, row.ny)) > blur:
             self.say(index, f"the normal is along {(dx, dy)}, not {(row.nx, row.ny)}")
 
-    def _exchanges(self, row: Row, other: PairChecks) -> Iterator[Vector]:
+    def _exchanges(self, number: int, row: Row, other: PairChecks) -> Iterator[Vector]:
         """The velocities that the hit may leave, in the order of how usual they are."""
         nx, ny = row.nx, row.ny
         b, closing = self.scene.ball.b**2, -((row.vx0 - row.ux) * nx + (row.vy0 - row.uy) * ny)
-        pressed = {self._presses(mine, theirs, nx, ny) for mine in self._pulls() for theirs in other._pulls()}
+        if self._is_first(number):  # both go on otherwise after it
+            self.pressed = {self._presses(mine, theirs, nx, ny) for mine in self._pulls() for theirs in other._pulls()}
+            other.pressed = self.pressed
+        pressed = self.pressed
         gains = []
         if False in pressed and closing > 0.0:
             gains += [closing + b * closing, closing]  # what is left of faster hits has no rebound
@@ -114,9 +118,9 @@ class PairChecks(RowChecks):
             if closing > 0.0:
                 v = (v[0] + closing * bearing.nx, v[1] + closing * bearing.ny)
         if v != row.after:
-            state = State(row.time, row.x, row.y, *v)
-            first = self.ways[0]
-            self.ways.append(Way(state, Mode.FLIES if first.bearer is None else self.mode_on(first.bearer, state), first.bearer))
+            ways, must_end = self.ways, self.must_end
+            self.goes_on(row._replace(vx1=v[0], vy1=v[1]))
+            self.ways, self.must_end = [*ways, *self.ways], must_end and self.must_end
 
     # ---- balls between others
 
@@ -144,7 +148,7 @@ class PairChecks(RowChecks):
             self.say(index, f"a crushed ball stands, and does not move at {row.after}")
         if own is not None and not self._has_no_room(index, row):
             self.say(index, f"nothing holds the ball against elements[{row.element}]")
-        self.is_crushed, self.crushed_at = True, row.time
+        self.is_crushed, self.crushed_at, self.must_end = True, row.time, False
         state = State(row.time, row.x, row.y, 0.0, 0.0)
         self.ways = [Way(state, Mode.RESTS, Bearer(row.element, row.nx, row.ny, 0.0, 0.0))]
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from ledger_contact import Settling, after_contact, along, closing_on, hop, press_on, projections, settling
 from ledger_known import Known, Way
-from ledger_law import Surface, outcomes, split
+from ledger_law import HOP_ULPS, Surface, outcomes, split
 from ledger_motion import Core
 from ledger_row import BOUNCE, CONTACT_BEGINS, Row, apart
 from ledger_sensors import Report, curve_of
@@ -30,8 +30,6 @@ class RowChecks(Known):
     def bounce(self, index: int, row: Row) -> None:
         self.remember(row)
         own = self.stands_on(index, row)
-        if self.walk.settles_at < math.inf:  # the contact to which it settled never began
-            self.walk.settles_at, self.walk.bearer = math.inf, None
         self.goes_on(row)
         if own is None:
             return
@@ -126,7 +124,10 @@ class RowChecks(Known):
         if own is None:
             return
         bearer = Bearer(row.element, row.nx, row.ny, row.ux, row.uy)
-        self.ways = [Way(state, self.mode_on(bearer, state), bearer)]
+        mode = self.mode_on(bearer, state)
+        if mode is Mode.RESTS and apart(row.after, (row.ux, row.uy)) > self.blur(row):
+            mode = Mode.SLIDES  # pushed along by something else
+        self.ways = [Way(state, mode, bearer)]
         self.closes_no_more(index, row)
         bearings = self.bearings(row)
         a, scale = self.walk.acceleration, self.blur(row)
@@ -173,6 +174,8 @@ class RowChecks(Known):
             return True
         run = self.setting.runs.get(row.element)
         core = None if run is None else run.around(row.time, EXACT * row.time)
+        if self.is_moved_on(index, row):
+            return True
         if self.jammed == row.time or (core is not None and _deforms(core)):
             return True
         wall = self.scene.elements[row.element]
@@ -190,6 +193,14 @@ class RowChecks(Known):
         rate = (vx - row.ux) * ex + (vy - row.uy) * ey or ax * ex + ay * ey
         allowed = TOLERANCE * self.size
         return (at >= length - allowed and rate > 0.0) or (at <= allowed and rate < 0.0)
+
+    def is_moved_on(self, index: int, row: Row) -> bool:
+        """Whether a part that held the ball, too, moves otherwise from now on, or another ball has put it off."""
+        now = {k for k, run in self.setting.runs.items() if row.time in run.changes}
+        if any(b.element in now for b in self.bearings(row)):
+            return True
+        met = any(r.kind == BOUNCE and r.element >= len(self.scene.elements) for r in self.at_instant(index))
+        return met and self.touches.own(index).gap > HOP_ULPS * self.extent
 
     # ---- sensors
 

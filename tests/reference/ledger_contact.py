@@ -147,8 +147,8 @@ def after_contact(
     stands = rests or (is_standing(v, a, rules) and is_carried(a, bearings))
     if stands:
         yield bearing.ux, bearing.uy
-    # Where something else moves into the ball, nothing holds it.
-    if pressed and bearing.straight and (not stands or any(b.ux or b.uy for b in bearings)):
+    # Where something else moves into the ball, friction does not hold it; nor does what it only nearly touches.
+    if pressed and bearing.straight and (not rests or any(b.ux or b.uy for b in bearings)):
         yield along(bearing, v)
 
 

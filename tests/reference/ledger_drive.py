@@ -27,10 +27,12 @@ CLEARANCE = 2.0**-14  # of the extent: as far from a part that sets off a crushe
 
 
 class Crushed(NamedTuple):
-    """A ball that is held between a part and something else."""
+    """A ball that is held between a part and something else, and the normal from the part."""
 
     x: float
     y: float
+    nx: float
+    ny: float
     part: int
 
 
@@ -53,7 +55,7 @@ class Drive:
         self.freed: dict[int, list[float]] = {}
         self.crushed: dict[int, Crushed] = {}
         self._scene, self._rows, self._extent, self._allowed = scene, rows, extent, 1e-9 * size
-        self._reach = scene.ball.radius
+        self._reach, self._is_point = scene.ball.radius, scene.ball.radius == 0.0
         self._names = {element.name: index for index, element in enumerate(scene.elements) if element.name}
         self._waiting = sorted(commands, key=lambda command: command[0])
         numbers = [k for k, row in enumerate(rows) if row.kind in (PART_STOPS, CRUSH)]
@@ -104,13 +106,13 @@ class Drive:
         halt, at = run.halt(), run.legs[-1].now(time)
         if halt.time <= time * (1.0 + EXACT):  # within rounding it is there, whether or not that has been reported
             at = halt.at
-        run.go(time, at, run.asked)
+        run.go(time, at, run.allowed(at, run.asked))
 
     def _mind_crushed(self, time: float, index: int, run: PartRun) -> None:
         """A part may not close on a crushed ball, and frees those that it moves away from."""
         for ball, place in list(self.crushed.items()):
             speed = sum(map(abs, run.legs[-1].rates)) * max(run.length, 1.0)
-            gap, closing = self._towards(time, run, place.x, place.y)
+            gap, closing = self._towards(time, index, place)
             if gap > 2.0 * CLEARANCE * self._extent:
                 continue
             # A part that slides past the ball does neither.
@@ -119,18 +121,22 @@ class Drive:
             elif closing < -EXACT * speed:
                 self._free(time, ball, index)
 
-    def _towards(self, time: float, run: PartRun, x: float, y: float) -> tuple[float, float]:
-        """The gap [m] between a part and a ball, and how fast the part closes it [m/s]."""
+    def _towards(self, time: float, index: int, ball: Crushed) -> tuple[float, float]:
+        """The gap [m] between a part and a ball, and how fast the part closes it [m/s], as far as that can be told."""
+        run = self.runs[index]
         core = run.core(np.array([time]))
         ax, ay, dx, dy = core.x0[0], core.y0[0], core.x1[0] - core.x0[0], core.y1[0] - core.y0[0]
         square = dx * dx + dy * dy
-        share = min(max(((x - ax) * dx + (y - ay) * dy) / square, 0.0), 1.0) if square else 0.0
-        px, py = ax + share * dx, ay + share * dy
-        away = math.hypot(x - px, y - py)
+        share = min(max(((ball.x - ax) * dx + (ball.y - ay) * dy) / square, 0.0), 1.0) if square else 0.0
+        nx, ny = ball.x - ax - share * dx, ball.y - ay - share * dy
+        away = math.hypot(nx, ny)
+        if away <= self._allowed:  # a point lies on a wall: on the side that it was crushed on, from another on its own
+            side = math.copysign(1.0, ball.nx * dy - ball.ny * dx) * (1.0 if index == ball.part else -1.0)
+            nx, ny = side * dy, -side * dx
+        norm = math.hypot(nx, ny) or 1.0
         vx = core.vx0[0] + share * (core.vx1[0] - core.vx0[0])
         vy = core.vy0[0] + share * (core.vy1[0] - core.vy0[0])
-        closing = (vx * (x - px) + vy * (y - py)) / away if away else math.inf
-        return float(away - run.radius - self._reach), float(closing)
+        return float(away - run.radius - self._reach), float((vx * nx + vy * ny) / norm)
 
     def _free(self, time: float, ball: int, by: int) -> None:
         part = self.crushed.pop(ball).part
@@ -179,14 +185,18 @@ class Drive:
             self._say(number, f"elements[{row.element}] is no part")
             return 1
         halt, rates = run.halt(), run.legs[-1].rates
-        if not any(rates) and row.time - run.legs[-1].begin <= EXACT * row.time and any(run.held_at_once()):
-            # As narrow as it may be to within rounding: it sets off, and stops.
+        if row.time - run.legs[-1].begin <= EXACT * row.time and run.held_at_once() != rates:
+            # Within rounding it is at the stop that it has been told to run into: it may set off, and stop.
             halt, rates = Halt(row.time, run.legs[-1].at, rates), run.held_at_once()
         elif not self._is_due(run, row.time):
             at = run.legs[-1].now(row.time)
             halt = Halt(row.time, at, run.blocked_rates())
             if not self._is_blocked(number, row, run):
                 self._say(number, f"nothing stops elements[{row.element}] before {run.halt().time!r}")
+        else:
+            left = [run.places(run.core_once(halt.at, r)) for r in run.rates_after(halt)]
+            seen = [self._rows[k].after for k in numbers[: len(left[0])]]
+            halt = halt._replace(rates=run.rates_after(halt)[_nearest(left, seen)])
         before = run.places(run.core_once(halt.at, rates))
         # To the bit when the ledger says, so that rows of this instant see the part move as it does from then on.
         self._halt(run, halt._replace(time=row.time) if self._is_due(run, row.time) else halt)
@@ -220,7 +230,7 @@ class Drive:
         if run is None:
             self._say(number, f"elements[{row.element}] is no part that could crush a ball")
             return
-        self.crushed[row.ball] = Crushed(row.x, row.y, row.element)
+        self.crushed[row.ball] = Crushed(row.x, row.y, row.nx, row.ny, row.element)
         if stop is None or (stop.kind, stop.element, stop.time) != (PART_STOPS, row.element, row.time):
             self._say(number, f"elements[{row.element}] does not stop when it crushes a ball")
         if not row.ux * row.nx + row.uy * row.ny > 0.0:
@@ -229,16 +239,22 @@ class Drive:
     def _is_blocked(self, number: int, row: Row, run: PartRun) -> bool:
         """Whether a ball blocks a part: one that is crushed, or that a bumper on a rail closes on and turns back from."""
         return any(
-            abs(gap) <= self._allowed and closing > 0.0
-            for gap, closing in (self._towards(row.time, run, x, y) for x, y in self._balls_at(number, row, run))
+            abs(gap) <= self._allowed and (closing > 0.0 or self._is_point)  # whose side of a second wall is not told
+            for gap, closing in (self._towards(row.time, row.element, ball) for ball in self._balls_at(number, row, run))
         )
 
-    def _balls_at(self, number: int, row: Row, run: PartRun) -> Iterator[Vector]:
-        yield from ((c.x, c.y) for c in self.crushed.values())
+    def _balls_at(self, number: int, row: Row, run: PartRun) -> Iterator[Crushed]:
+        yield from self.crushed.values()
         if run.turns_back:
             for other in reversed(self._rows[:number]):
                 if other.time < row.time:
                     return
-                yield other.x, other.y
+                yield Crushed(other.x, other.y, other.nx, other.ny, other.element)
 
 
+def _nearest(ends: Sequence[Sequence[tuple[float, ...]]], velocities: Sequence[Vector]) -> int:
+    """Which of some motions of ends has them move most nearly at the velocities that were seen."""
+    return min(
+        range(len(ends)),
+        key=lambda k: sum(apart(end[2:], v) for end, v in zip(ends[k], velocities, strict=False)),  # type: ignore[arg-type]
+    )

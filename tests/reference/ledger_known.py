@@ -141,7 +141,7 @@ class Known:
         ex, ey = core.vx1 - core.vx0, core.vy1 - core.vy0
         dx, dy = core.x1 - core.x0, core.y1 - core.y0
         found = []
-        for k in range(3):
+        for k in range(len(ex)):
             moves = bool(core.spin[k] or ex[k] or ey[k])
             length = math.hypot(dx[k], dy[k])
             spin = float(ey[k] * dx[k] - ex[k] * dy[k]) / length**2 if length else 0.0
@@ -177,6 +177,8 @@ class Known:
         state, bearer = State(row.time, row.x, row.y, *row.after), self.walk.bearer
         mode = Mode.FLIES
         if bearer is not None:
+            if row.element == bearer.element:  # which may move otherwise than it did
+                bearer = Bearer(row.element, row.nx, row.ny, row.ux, row.uy)
             mode = self.mode_on(bearer, state)
             wx, wy = row.vx1 - bearer.ux, row.vy1 - bearer.uy
             moves = math.hypot(wx, wy) > self.blur(row)

@@ -8,6 +8,7 @@ What makes a leg end is in `ledger_drive`.
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -79,8 +80,8 @@ class PartRun:
         self._columns: tuple[Floats, Floats, Floats] | None = None
 
     def go(self, time: float, at: tuple[float, ...], rates: tuple[float, ...]) -> None:
-        """From now on, at rates that a stop may forbid."""
-        self.legs.append(Leg(time, at, self.allowed(at, rates)))
+        """From now on, at these rates."""
+        self.legs.append(Leg(time, at, rates))
         self._columns = None
 
     def allowed(self, at: tuple[float, ...], rates: tuple[float, ...]) -> tuple[float, ...]:
@@ -88,11 +89,15 @@ class PartRun:
 
     def held_at_once(self) -> tuple[float, ...]:
         """The rates with which the part has been told to move, where it may do so for no more than rounding."""
-        return self.legs[-1].rates
+        return self.asked
 
     def halt(self) -> Halt:
         """The next stop, at time inf where there is none."""
         raise NotImplementedError
+
+    def rates_after(self, halt: Halt) -> list[tuple[float, ...]]:
+        """The rates that a stop may leave: where the next stop is due at once it has rows of its own, or not."""
+        return [halt.rates]
 
     def blocked_rates(self) -> tuple[float, ...]:
         """The rates after a ball stops the part."""
@@ -113,12 +118,11 @@ class PartRun:
         """The core with numbers `at` that change at `rates`."""
         return self.core_of(np.array([at]), np.array([rates]))
 
-    def _numbers(self, t: Floats, look: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Where the part is at times, and its rates: those of the leg of so many seconds later."""
+    def _numbers(self, t: Floats) -> tuple[Floats, Floats]:
         if self._columns is None:
             self._columns = tuple(np.array(column) for column in zip(*self.legs, strict=True))  # type: ignore[assignment]
         begin, at, rates = self._columns
-        leg = np.maximum(np.searchsorted(begin, t + look, side="right") - 1, 0)
+        leg = np.maximum(np.searchsorted(begin, t, side="right") - 1, 0)
         return at[leg] + rates[leg] * (t - begin[leg])[:, None], rates[leg]
 
     @property
@@ -127,9 +131,11 @@ class PartRun:
         return [leg.begin for leg in self.legs[1:]]
 
     def around(self, t: float, same_instant: float) -> Core:
-        """The core at a time, moving as it does just before, then and just after: near a change it may be either."""
-        at, rates = self._numbers(np.array([t, t, t]), np.array([-same_instant, 0.0, same_instant]))
-        return self.core_of(at, rates)
+        """The core at a time, once for each of the ways in which it moves there: near a change it may be any."""
+        begins = [leg.begin for leg in self.legs]
+        first, last = bisect_left(begins, t - same_instant), bisect_right(begins, t + same_instant)
+        legs = self.legs[max(first - 1, 0) : last]
+        return self.core_of(np.array([leg.now(t) for leg in legs]), np.array([leg.rates for leg in legs]))
 
     def moves(self, t: Floats) -> npt.NDArray[np.bool_]:
         """Whether at times the surface does not move as one: the part turns or stretches."""
@@ -166,6 +172,10 @@ class Sliding(PartRun):
             return Halt(math.inf, (), ())
         end = self._span if rate > 0.0 else 0.0
         return Halt(begin + (end - offset) / rate, (end,), self._stopped(rate))
+
+    def rates_after(self, halt: Halt) -> list[tuple[float, ...]]:
+        """The rates that a stop may leave: where the next stop is due at once it has rows of its own, or not."""
+        return [halt.rates]
 
     def blocked_rates(self) -> tuple[float, ...]:
         return self._stopped(self.legs[-1].rates[0])
@@ -263,6 +273,9 @@ class Dragged(PartRun):
             return Halt(begin + seconds, there, (0.0,) * 4)
         there = tuple(min(max(a, low), high) for a, low, high in zip(there, self._low, self._high, strict=True))
         return Halt(begin + seconds, there, self.allowed(there, rates))
+
+    def rates_after(self, halt: Halt) -> list[tuple[float, ...]]:
+        return [halt.rates, self._inside(halt.at, self.legs[-1].rates)]
 
     def core_of(self, at: Floats, rates: Floats) -> Core:
         return Core(*at.T, *rates.T, np.zeros(len(at)))

@@ -132,7 +132,8 @@ class RowChecks(Known):
         bearings = self.bearings(row)
         a, scale = self.walk.acceleration, self.blur(row)
         closing = max((closing_on(b, row.before) for b in bearings), default=0.0)
-        bases = [row.before] if closing <= scale else []
+        # Whether it closes on anything that it surely touches has been looked at.
+        bases = [row.before] if split(self.surfaces(row, 0.0)[0], *row.before)[0] <= scale else []
         if closing > 0.0 and self.is_over(index, bearings):
             bases += projections(bearings, row.before)
         lawful = []
@@ -187,7 +188,7 @@ class RowChecks(Known):
             return math.hypot(vx, vy) > self.blur(row)
         start, end = wall.start, wall.end
         if core is not None:
-            start, end = (float(core.x0[1]), float(core.y0[1])), (float(core.x1[1]), float(core.y1[1]))
+            start, end = (float(core.x0[0]), float(core.y0[0])), (float(core.x1[0]), float(core.y1[0]))
         ex, ey, length = direction(start, end)
         at = (row.x - start[0]) * ex + (row.y - start[1]) * ey
         rate = (vx - row.ux) * ex + (vy - row.uy) * ey or ax * ex + ay * ey

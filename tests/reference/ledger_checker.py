@@ -2,8 +2,8 @@
 
 `find_problems(scene, start, ledger, end, commands)` goes from row to row: every flight must lead to the next row, every
 bounce obey the law on the true surface, every contact begin and end with a reason, every part stop where its motion
-ends. Then the whole path of each ball is searched for sensor crossings that were missed, and for elements and balls that
-it went through. No code of the engine takes part; what it must do is in design.md, "Physics contract".
+ends. Then the whole path of each ball is searched for sensor crossings that were missed, and for elements and balls
+that it went through. No code of the engine takes part; what it must do is in design.md, "Physics contract".
 """
 
 from __future__ import annotations

@@ -52,7 +52,8 @@ class Drive:
     ) -> None:
         self.runs = runs_of(scene, extent)
         self.problems: list[str] = []
-        self.freed: dict[int, list[float]] = {}
+        self.freed: dict[int, list[tuple[float, int]]] = {}  # by ball: when [s], and before which row of these kinds
+        self._next = len(rows)
         self.crushed: dict[int, Crushed] = {}
         self._scene, self._rows, self._extent, self._allowed = scene, rows, extent, 1e-9 * size
         self._reach, self._is_point = scene.ball.radius, scene.ball.radius == 0.0
@@ -60,6 +61,7 @@ class Drive:
         self._waiting = sorted(commands, key=lambda command: command[0])
         numbers = [k for k, row in enumerate(rows) if row.kind in (PART_STOPS, CRUSH)]
         while numbers:
+            self._next = numbers[0]
             time = rows[numbers[0]].time
             while self._waiting and self._waiting[0][0] < time:
                 self._tell()
@@ -68,6 +70,7 @@ class Drive:
                 while self._waiting and self._waiting[0][0] == time:
                     self._tell()
             del numbers[: self._take(numbers)]
+        self._next = len(rows)
         while self._waiting and self._waiting[0][0] <= end:
             self._tell()
         self._come_to(end * (1.0 - EXACT))
@@ -89,7 +92,7 @@ class Drive:
             return
         run, rates = self.runs[index], self._rates_of(index, value)
         if rates != run.asked:
-            run.asked = rates
+            run.asked, run.told_at = rates, time
             self._set_off(time, run)
             self._mind_crushed(time, index, run)
 
@@ -140,7 +143,7 @@ class Drive:
 
     def _free(self, time: float, ball: int, by: int) -> None:
         part = self.crushed.pop(ball).part
-        self.freed.setdefault(ball, []).append(time)
+        self.freed.setdefault(ball, []).append((time, self._next))
         if part not in (by, -1):
             self._set_off(time, self.runs[part])
 
@@ -184,22 +187,23 @@ class Drive:
         if run is None:
             self._say(number, f"elements[{row.element}] is no part")
             return 1
-        halt, rates = run.halt(), run.legs[-1].rates
-        if row.time - run.legs[-1].begin <= EXACT * row.time and run.held_at_once() != rates:
-            # Within rounding it is at the stop that it has been told to run into: it may set off, and stop.
-            halt, rates = Halt(row.time, run.legs[-1].at, rates), run.held_at_once()
-        elif not self._is_due(run, row.time):
-            at = run.legs[-1].now(row.time)
-            halt = Halt(row.time, at, run.blocked_rates())
+        ends = len(run.places(run.core(np.array([row.time]))))
+        rows = [self._rows[k] for k in numbers[:ends]]
+        leg, halt = run.legs[-1], run.halt()
+        rates = leg.rates
+        if row.time - run.told_at <= EXACT * row.time:  # it has just been told to run into the stop where it is
+            rates = _nearest(run, leg.at, [rates, *run.unsure(leg.at, run.asked)], [r.before for r in rows])
+            halt = Halt(row.time, leg.at, leg.rates) if rates != leg.rates else halt
+        if rates == leg.rates and not self._is_due(run, row.time):
+            halt = Halt(row.time, leg.now(row.time), run.blocked_rates())
             if not self._is_blocked(number, row, run):
                 self._say(number, f"nothing stops elements[{row.element}] before {run.halt().time!r}")
         else:
-            left = [run.places(run.core_once(halt.at, r)) for r in run.rates_after(halt)]
-            seen = [self._rows[k].after for k in numbers[: len(left[0])]]
-            halt = halt._replace(rates=run.rates_after(halt)[_nearest(left, seen)])
+            left = [halt.rates, *run.unsure(halt.at, rates)]
+            halt = halt._replace(rates=_nearest(run, halt.at, left, [r.after for r in rows]))
         before = run.places(run.core_once(halt.at, rates))
         # To the bit when the ledger says, so that rows of this instant see the part move as it does from then on.
-        self._halt(run, halt._replace(time=row.time) if self._is_due(run, row.time) else halt)
+        self._halt(run, halt._replace(time=row.time))
         after = run.places(run.core_once(halt.at, run.legs[-1].rates))
         for k, (old, new) in enumerate(zip(before, after, strict=True)):
             if k >= len(numbers):
@@ -208,9 +212,7 @@ class Drive:
             self._compare(numbers[k], row.element, halt.time, old, new)
         return len(before)
 
-    def _compare(
-        self, number: int, element: int, time: float, old: tuple[float, ...], new: tuple[float, ...]
-    ) -> None:
+    def _compare(self, number: int, element: int, time: float, old: tuple[float, ...], new: tuple[float, ...]) -> None:
         """All of a stop's row against what follows from the motion."""
         row = self._rows[number]
         if (row.kind, row.element) != (PART_STOPS, element):
@@ -233,14 +235,16 @@ class Drive:
         self.crushed[row.ball] = Crushed(row.x, row.y, row.nx, row.ny, row.element)
         if stop is None or (stop.kind, stop.element, stop.time) != (PART_STOPS, row.element, row.time):
             self._say(number, f"elements[{row.element}] does not stop when it crushes a ball")
-        if not row.ux * row.nx + row.uy * row.ny > 0.0:
+        if not row.ux * row.nx + row.uy * row.ny > EXACT * math.hypot(row.ux, row.uy):
             self._say(number, f"elements[{row.element}] does not close on the ball that it is to crush")
 
     def _is_blocked(self, number: int, row: Row, run: PartRun) -> bool:
-        """Whether a ball blocks a part: one that is crushed, or that a bumper on a rail closes on and turns back from."""
+        """Whether a ball blocks a part: one that is crushed, or that a bumper on a rail turns back from."""
         return any(
             abs(gap) <= self._allowed and (closing > 0.0 or self._is_point)  # whose side of a second wall is not told
-            for gap, closing in (self._towards(row.time, row.element, ball) for ball in self._balls_at(number, row, run))
+            for gap, closing in (
+                self._towards(row.time, row.element, ball) for ball in self._balls_at(number, row, run)
+            )
         )
 
     def _balls_at(self, number: int, row: Row, run: PartRun) -> Iterator[Crushed]:
@@ -252,9 +256,13 @@ class Drive:
                 yield Crushed(other.x, other.y, other.nx, other.ny, other.element)
 
 
-def _nearest(ends: Sequence[Sequence[tuple[float, ...]]], velocities: Sequence[Vector]) -> int:
-    """Which of some motions of ends has them move most nearly at the velocities that were seen."""
-    return min(
-        range(len(ends)),
-        key=lambda k: sum(apart(end[2:], v) for end, v in zip(ends[k], velocities, strict=False)),  # type: ignore[arg-type]
-    )
+def _nearest(
+    run: PartRun, at: tuple[float, ...], choices: Sequence[tuple[float, ...]], velocities: Sequence[Vector]
+) -> tuple[float, ...]:
+    """Of several rates those at which what a stop's rows tell of moves most nearly as was seen."""
+
+    def off(rates: tuple[float, ...]) -> float:
+        places = run.places(run.core_once(at, rates))
+        return sum(apart((vx, vy), v) for (_, _, vx, vy), v in zip(places, velocities, strict=False))
+
+    return min(choices, key=off)

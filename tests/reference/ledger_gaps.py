@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from ledger_motion import PartRun
 from ledger_paths import Floats, Piece, Track, to_arc, to_point, to_segment, track_of
 from ledger_shapes import Ints, Shapes, direction
@@ -84,9 +83,7 @@ def _spread(pieces: Sequence[Ints], values: Sequence[float]) -> Floats:
 # ---- parts; no piece outlasts a change of their velocities
 
 
-def _to_part(
-    index: int, run: PartRun, ball: float, track: Track, allowed: float
-) -> Iterator[Gaps]:
+def _to_part(index: int, run: PartRun, ball: float, track: Track, allowed: float) -> Iterator[Gaps]:
     reach = run.radius + ball
     if reach == 0.0:
         return
@@ -99,19 +96,14 @@ def _to_part(
         seen = track.of(uniform).relative_to(x, y, core.vx0, core.vy0)
         dx, dy = core.x1 - core.x0, core.y1 - core.y0
         length = np.hypot(dx, dy)
-        if run.length > 0.0:
-            gaps = to_segment(seen, dx / length, dy / length, length)
-        else:
-            gaps = to_point(seen)
+        gaps = to_segment(seen, dx / length, dy / length, length) if run.length > 0.0 else to_point(seen)
         yield Gaps(np.full(uniform.shape, index), uniform, gaps - reach)
     if turning.size:
         gaps = _to_turning(track.of(turning), middle[turning], run, reach, allowed)
         yield Gaps(np.full(turning.shape, index), turning, gaps)
 
 
-def _to_turning(
-    track: Track, middle: Floats, run: PartRun, reach: float, allowed: float
-) -> Floats:
+def _to_turning(track: Track, middle: Floats, run: PartRun, reach: float, allowed: float) -> Floats:
     """Least gaps to a part that turns or stretches.
 
     Seen from the part its gap f has f'' >= -A (see `_bound`): between two samples it lies above the chord less
@@ -186,9 +178,10 @@ def _bound(track: Track, middle: Floats, low: Floats, high: Floats, run: PartRun
 
 def least_distances(one: Sequence[Piece], other: Sequence[Piece]) -> tuple[Floats, Ints, Floats]:
     """Least distances [m] of the centres of two balls, the first one's piece in each, and when each begins [s]."""
-    begins, ends = zip(*((np.array([p.begin for p in path]), path[-1].begin + path[-1].seconds) for path in (one, other)))
+    begins = [np.array([piece.begin for piece in path]) for path in (one, other)]
+    end = min(path[-1].begin + path[-1].seconds for path in (one, other))
     times = np.unique(np.concatenate(begins))
-    times = times[times < min(ends)]
+    times = times[times < end]
     which = [np.maximum(np.searchsorted(begin, times, side="right") - 1, 0) for begin in begins]
     tracks = [track_of(path).of(w) for path, w in zip((one, other), which, strict=True)]
     moved = []
@@ -196,7 +189,5 @@ def least_distances(one: Sequence[Piece], other: Sequence[Piece]) -> tuple[Float
         since = times - begin[w]
         x, y = (column[:, 0] for column in track.at(since[:, None]))
         moved.append((x, y, track.vx + track.ax * since, track.vy + track.ay * since, track.ax, track.ay))
-    seconds = np.diff(np.append(times, min(ends)))
+    seconds = np.diff(np.append(times, end))
     return to_point(Track(seconds, *(a - b for a, b in zip(*moved, strict=True)), times)), which[0], times
-
-

@@ -17,7 +17,7 @@ from ledger_motion import Turning
 from ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH, Row, apart
 from ledger_sensors import Report
 from ledger_setting import EXACT, STANDING, TOLERANCE, Setting
-from ledger_touch import ULP, Bearing, Ledger, Own, Touches
+from ledger_touch import ULP, Bearing, Ledger, Own, Touches, Vector
 from ledger_walk import Bearer, Mode, State, Walk
 
 from bounce_env.scene import Field, Sensor
@@ -46,9 +46,7 @@ class Known:
         self.numbers = [*mine.tolist(), len(ledger)]  # of the rows in the ledger, and that of its end
         self.rows = [setting.rows[k] for k in mine]
         self.problems: list[str] = []
-        self.touches = Touches(
-            setting.shapes, ledger[mine], setting.switches, {0.0, *setting.commanded}, self.extent
-        )
+        self.touches = Touches(setting.shapes, ledger[mine], setting.switches, {0.0, *setting.commanded}, self.extent)
         cuts = sorted({t for run in setting.runs.values() for t in run.changes})
         self.walk = Walk(self.scene, start, setting.commands, cuts)
         self.kicked: dict[int, float] = setting.kicked
@@ -59,7 +57,7 @@ class Known:
         self.rolls_on = -1  # the element off which the ball hopped in its last bounce
         self.hopped = -math.inf  # [s] when it did
         self.jammed = -math.inf  # [s] when other balls last stopped it
-        self.is_crushed, self.crushed_at = False, -math.inf
+        self.is_crushed, self.crushed_at = False, -1  # the number of the row that says so
         self.place = start[1:3]
         self.known: dict[int, tuple[float, float]] = {}  # normals of what was touched at this place
 
@@ -158,14 +156,14 @@ class Known:
         walk = self.walk
         return self.touches.all_at(self.setting.shapes, state, walk.enabled, walk.acceleration, self.known)
 
-    def is_over(self, index: int, bearings: Sequence[Bearing]) -> bool:
-        """Whether the bounces at this instant end here, because they are soft or too many."""
+    def is_over(self, index: int, bearings: Sequence[Bearing], v: Vector) -> bool:
+        """Whether the bounces of a ball that comes with `v` end at this row, because they are soft or too many."""
         row = self.rows[index]
         kicks = []
         for bearing in bearings:
             element = self.scene.elements[bearing.element]
             kicks.append(element.kick_threshold if element.kick > 0.0 else math.inf)
-        if is_over(bearings, row.before, self.walk.acceleration, self.rules, kicks):
+        if is_over(bearings, v, self.walk.acceleration, self.rules, kicks):
             return True
         first = max(0, index - BOUNCES_AT_ONE_INSTANT - 2)  # the end of a contact may come between
         return sum(r.kind == BOUNCE and r.time == row.time for r in self.rows[first:index]) >= BOUNCES_AT_ONE_INSTANT

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -76,6 +77,7 @@ class PartRun:
 
     def __init__(self, at: tuple[float, ...], rates: tuple[float, ...]) -> None:
         self.legs = [Leg(0.0, at, rates)]
+        self.told_at = -math.inf  # [s]
         self.asked = rates if any(rates) else tuple(0.0 for _ in at)
         self._columns: tuple[Floats, Floats, Floats] | None = None
 
@@ -87,17 +89,13 @@ class PartRun:
     def allowed(self, at: tuple[float, ...], rates: tuple[float, ...]) -> tuple[float, ...]:
         raise NotImplementedError
 
-    def held_at_once(self) -> tuple[float, ...]:
-        """The rates with which the part has been told to move, where it may do so for no more than rounding."""
-        return self.asked
+    def unsure(self, at: tuple[float, ...], rates: tuple[float, ...]) -> list[tuple[float, ...]]:
+        """The rates that may be left where the part is at a stop within rounding, and so may set off or not."""
+        return [rates, self.allowed(at, rates)]
 
     def halt(self) -> Halt:
         """The next stop, at time inf where there is none."""
         raise NotImplementedError
-
-    def rates_after(self, halt: Halt) -> list[tuple[float, ...]]:
-        """The rates that a stop may leave: where the next stop is due at once it has rows of its own, or not."""
-        return [halt.rates]
 
     def blocked_rates(self) -> tuple[float, ...]:
         """The rates after a ball stops the part."""
@@ -173,10 +171,6 @@ class Sliding(PartRun):
         end = self._span if rate > 0.0 else 0.0
         return Halt(begin + (end - offset) / rate, (end,), self._stopped(rate))
 
-    def rates_after(self, halt: Halt) -> list[tuple[float, ...]]:
-        """The rates that a stop may leave: where the next stop is due at once it has rows of its own, or not."""
-        return [halt.rates]
-
     def blocked_rates(self) -> tuple[float, ...]:
         return self._stopped(self.legs[-1].rates[0])
 
@@ -244,14 +238,16 @@ class Dragged(PartRun):
             for a, r, low, high in zip(at, rates, self._low, self._high, strict=True)
         )
 
-    def held_at_once(self) -> tuple[float, ...]:
-        return self._inside(self.legs[-1].at, self.asked)
+    def unsure(self, at: tuple[float, ...], rates: tuple[float, ...]) -> list[tuple[float, ...]]:
+        held = self._inside(at, rates)
+        choices = [(rate,) if rate == kept else (rate, kept) for rate, kept in zip(rates, held, strict=True)]
+        return [*product(*choices), self.allowed(at, rates)]
 
     def _narrows_in(self, at: tuple[float, ...], rates: tuple[float, ...]) -> float:
         """For how long [s] the ends come closer to each other, until they may not."""
         dx, dy, ex, ey = at[2] - at[0], at[3] - at[1], rates[2] - rates[0], rates[3] - rates[1]
         closing, square = -(dx * ex + dy * ey), dx * dx + dy * dy - self._shortest**2
-        if closing <= SAME * (abs(dx * ex) + abs(dy * ey)):
+        if closing <= SAME * math.hypot(dx, dy) * math.hypot(ex, ey):  # the direction is known no better
             return math.inf
         if square <= SAME * self._shortest**2:
             return 0.0
@@ -273,9 +269,6 @@ class Dragged(PartRun):
             return Halt(begin + seconds, there, (0.0,) * 4)
         there = tuple(min(max(a, low), high) for a, low, high in zip(there, self._low, self._high, strict=True))
         return Halt(begin + seconds, there, self.allowed(there, rates))
-
-    def rates_after(self, halt: Halt) -> list[tuple[float, ...]]:
-        return [halt.rates, self._inside(halt.at, self.legs[-1].rates)]
 
     def core_of(self, at: Floats, rates: Floats) -> Core:
         return Core(*at.T, *rates.T, np.zeros(len(at)))

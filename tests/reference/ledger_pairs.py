@@ -146,9 +146,14 @@ class PairChecks(RowChecks):
         own = self.stands_on(index, row)
         if row.after != (0.0, 0.0):
             self.say(index, f"a crushed ball stands, and does not move at {row.after}")
+        last = next(self.at_instant(index), None)
+        struck = last is not None and (last.kind, last.element) == (BOUNCE, row.element)
+        state = self.walk.state
+        if not struck and not self.is_over(index, self.touching(state), state[3:]):
+            self.say(index, f"elements[{row.element}] crushes the ball without having struck it")
         if own is not None and not self._has_no_room(index, row):
             self.say(index, f"nothing holds the ball against elements[{row.element}]")
-        self.is_crushed, self.crushed_at, self.must_end = True, row.time, False
+        self.is_crushed, self.crushed_at, self.must_end = True, self.numbers[index], False
         state = State(row.time, row.x, row.y, 0.0, 0.0)
         self.ways = [Way(state, Mode.RESTS, Bearer(row.element, row.nx, row.ny, 0.0, 0.0))]
 
@@ -160,13 +165,14 @@ class PairChecks(RowChecks):
         )
         normals = [(b.nx, b.ny) for b in near]
         normals += [
-            (r.nx, r.ny) for r in self.rows[max(0, index - 64) : index] if r.kind == BOUNCE and apart((r.x, r.y), (row.x, row.y)) <= room
+            (r.nx, r.ny)
+            for r in self.rows[max(0, index - 64) : index]
+            if r.kind == BOUNCE and apart((r.x, r.y), (row.x, row.y)) <= room
         ]
         return any(nx * row.nx + ny * row.ny < -OPPOSED for nx, ny in normals)
 
     def set_free(self, time: float) -> None:
         """Once a command has opened the gap the ball goes on."""
         freed = self.setting.drive.freed.get(self.ball, [])
-        if self.is_crushed and any(self.crushed_at <= t <= time for t in freed):
+        if self.is_crushed and any(t <= time and number > self.crushed_at for t, number in freed):
             self.is_crushed = False
-

@@ -42,7 +42,9 @@ class RowChecks(Known):
             self.say(index, f"elements[{rival.first}] is closed on as fast, and comes first")
         self.closes_no_more(index, row)
         if closing <= scale:
-            hops = [hop(s, self.rules, row.before) for curvature in own.curvatures for s in self.surfaces(row, curvature)]
+            hops = [
+                hop(s, self.rules, row.before) for curvature in own.curvatures for s in self.surfaces(row, curvature)
+            ]
             if any(v is not None and apart(v, row.after) <= scale for v in hops):
                 self.rolls_on, self.hopped = row.element, row.time
                 return
@@ -87,7 +89,7 @@ class RowChecks(Known):
 
     def ends_of_corner(self, index: int, row: Row, bearings: Sequence[Bearing]) -> Iterator[tuple[float, float]]:
         """What is left of the velocity where the bounces in a corner are over."""
-        if not self.is_over(index, bearings):
+        if not self.is_over(index, bearings, row.before):
             return
         a = self.walk.acceleration
         for left in projections(bearings, row.before):
@@ -134,7 +136,7 @@ class RowChecks(Known):
         closing = max((closing_on(b, row.before) for b in bearings), default=0.0)
         # Whether it closes on anything that it surely touches has been looked at.
         bases = [row.before] if split(self.surfaces(row, 0.0)[0], *row.before)[0] <= scale else []
-        if closing > 0.0 and self.is_over(index, bearings):
+        if closing > 0.0 and self.is_over(index, bearings, row.before):
             bases += projections(bearings, row.before)
         lawful = []
         for b in bearings:
@@ -162,9 +164,11 @@ class RowChecks(Known):
     def has_reason_to_end(self, index: int, row: Row, bearer: Bearer) -> bool:
         """Taken off or pushed off, not pressed any more, switched off, past the wall's end, taken over, or rolling."""
         vx, vy = row.after
-        leaving = max((vx - ux) * bearer.nx + (vy - uy) * bearer.ny for ux, uy in ((bearer.ux, bearer.uy), (row.ux, row.uy)))
+        leaving = max(
+            (vx - ux) * bearer.nx + (vy - uy) * bearer.ny for ux, uy in ((bearer.ux, bearer.uy), (row.ux, row.uy))
+        )
         off = not self.walk.enabled[row.element] or (row.time, False) in self.setting.switches.get(row.element, [])
-        freed = row.time in self.setting.drive.freed.get(self.ball, [])
+        freed = any(time == row.time for time, _ in self.setting.drive.freed.get(self.ball, []))
         if leaving > 4.0 * ULP * (abs(vx) + abs(vy)) or off or freed:
             return True
         takes_over = self.rows[index + 1 : index + 2]
@@ -196,9 +200,10 @@ class RowChecks(Known):
         return (at >= length - allowed and rate > 0.0) or (at <= allowed and rate < 0.0)
 
     def is_moved_on(self, index: int, row: Row) -> bool:
-        """Whether a part that held the ball, too, moves otherwise from now on, or another ball has put it off."""
+        """Whether a part that touches the ball, too, moves it on or has just begun to, or another ball put it off."""
         now = {k for k, run in self.setting.runs.items() if row.time in run.changes}
-        if any(b.element in now for b in self.bearings(row)):
+        bearings = self.bearings(row)
+        if any(b.element in now or (b.element != row.element and (b.ux or b.uy)) for b in bearings):
             return True
         met = any(r.kind == BOUNCE and r.element >= len(self.scene.elements) for r in self.at_instant(index))
         return met and self.touches.own(index).gap > HOP_ULPS * self.extent

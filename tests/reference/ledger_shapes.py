@@ -7,16 +7,16 @@ seen by the ball's centre: lines at a distance `reach` from a segment, circles, 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from ledger_motion import PartRun
-from ledger_paths import Floats, Point, Track, to_arc, to_point, to_segment
+from ledger_paths import Floats, Point
 
-from bounce_env.scene import Arc, Bumper, Paddle, Scene, Wall
+from bounce_env.scene import Arc, Bumper, Scene, Wall
 
 Ints = npt.NDArray[np.int64]
 

@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from conftest import SOAK, soak_count
+from conftest import soak_count
 from ledger_checker import End, Start, find_problems
 from ledger_scenes import played, standing, with_all_kinds
+from ledger_tampering import changes
 from random_scenes import box, table
 
 from bounce_env.scene import Arc, Ball, Bumper, Field, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
@@ -123,45 +124,11 @@ RUNS = {
 }
 
 
-def changes(run):
-    """All that is done to a ledger, in words, and the ledger that it leaves.
-
-    A float is moved by a millionth of itself; where it is nearly zero, by a millionth of what its size goes by (the
-    scene, the ball's speed, 1 for a direction), since a millionth of nearly nothing is round-off. Each is moved one
-    way in turn, in a soak both ways; likewise element numbers become a neighbour's, in a soak all others.
-    """
-    x0, y0, x1, y1 = run.scene.bounds
-    size = max(x1 - x0, y1 - y0)
-    turn = itertools.cycle((1.0, -1.0))
-    count = len(run.scene.elements)
-    for k, row in enumerate(run.ledger):
-        speed = max(math.hypot(row["vx0"], row["vy0"]), math.hypot(row["vx1"], row["vy1"]))
-        scales = {"time": row["time"], "x": size, "y": size, "nx": 1.0, "ny": 1.0}
-        scales |= dict.fromkeys(("vx0", "vy0", "vx1", "vy1", "ux", "uy"), speed or 1.0)
-        for name, scale in scales.items():
-            step = 1e-6 * (abs(row[name]) if abs(row[name]) >= 0.01 * scale else scale)
-            for sign in (1.0, -1.0) if SOAK else (next(turn),):
-                yield f"row {k}: {name} {sign * step:+.3g}", changed(run.ledger, k, name, row[name] + sign * step)
-        others = range(-1, count + 1) if SOAK else {row["element"] + 1, row["element"] - 1}
-        for name, values in (("element", others), ("kind", range(6)), ("ball", (-1, 0, 1))):
-            for value in values:
-                if value != row[name]:
-                    yield f"row {k}: {name} {value}", changed(run.ledger, k, name, value)
-        yield f"row {k} removed", np.delete(run.ledger, k)
-        yield f"row {k} twice", np.insert(run.ledger, k, run.ledger[k])
-
-
-def changed(ledger, k, name, value):
-    copy = ledger.copy()
-    copy[name][k] = value
-    return copy
-
-
 @pytest.mark.parametrize("name", RUNS)
 def test_each_changed_or_missing_row_is_noticed(name):
     run = RUNS[name]()
     assert run.problems() == []
-    unnoticed = [what for what, ledger in changes(run) if not run._replace(ledger=ledger).problems()]
+    unnoticed = [what for what, ledger in changes(run.scene, run.ledger) if not run._replace(ledger=ledger).problems()]
     assert unnoticed == []
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from ledger_motion import PartRun
+from ledger_motion import Core, PartRun
 from ledger_paths import Floats, Piece, Track, to_arc, to_point, to_segment, track_of
 from ledger_shapes import Ints, Shapes, direction
 
@@ -106,42 +106,55 @@ def _to_part(index: int, run: PartRun, ball: float, track: Track, allowed: float
 def _to_turning(track: Track, middle: Floats, run: PartRun, reach: float, allowed: float) -> Floats:
     """Least gaps to a part that turns or stretches.
 
-    Seen from the part its gap f has f'' >= -A (see `_bound`): between two samples it lies above the chord less
-    A (t - a) (b - t) / 2. Spans in which that may be a dip are halved.
+    The gap f has f'' >= -A (see `_bound`), so that between two times it lies above both of the parabolas that leave
+    them at its own slopes and bend down by A: it is no less than where these meet. Spans in which that may be a dip
+    are halved.
     """
 
-    def gap(piece: Ints, t: Floats) -> Floats:
+    def look(piece: Ints, t: Floats) -> tuple[Floats, Floats]:
+        """The gap and its rate; velocities of a part are those in the middle of a piece."""
         here = track.of(piece)
         x, y = (column[:, 0] for column in here.at(t[:, None]))
         core = run.core(here.begin + t)
-        return _from_segment(core.x0, core.y0, core.x1, core.y1, x, y) - reach
+        meanwhile = run.core(middle[piece])
+        gap, rate = _from_segment(core, meanwhile, x, y, here.vx + here.ax * t, here.vy + here.ay * t)
+        return gap - reach, rate
 
     piece = np.arange(len(middle))
     low, high = np.zeros(len(middle)), track.seconds.copy()
-    at_low, at_high = gap(piece, low), gap(piece, high)
-    least = np.minimum(at_low, at_high)
+    (low_gap, low_rate), (high_gap, high_rate) = look(piece, low), look(piece, high)
+    least = np.minimum(low_gap, high_gap)
     while piece.size:
-        half = 0.5 * _bound(track.of(piece), middle[piece], low, high, run) * (high - low) ** 2
+        bend, h = _bound(track.of(piece), middle[piece], low, high, run), high - low
         with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.clip(0.5 * (1.0 - (at_high - at_low) / half), 0.0, 1.0)
-        share = np.where(np.isfinite(share), share, 0.0)
-        dip = at_low + (at_high - at_low) * share - half * share * (1.0 - share)
+            meet = (high_gap - low_gap - high_rate * h - 0.5 * bend * h * h) / (low_rate - high_rate - bend * h)
+        meet = np.clip(np.where(np.isfinite(meet), meet, 0.5 * h), 0.0, h)
+        dip = low_gap + (low_rate - 0.5 * bend * meet) * meet
         # What is deep in already needs no further look.
-        open_ = (np.minimum(dip, np.minimum(at_low, at_high)) < -1.5 * allowed) & (least[piece] >= -allowed)
-        piece, low, high, at_low, at_high = (a[open_] for a in (piece, low, high, at_low, at_high))
+        open_ = (np.minimum(dip, np.minimum(low_gap, high_gap)) < -1.5 * allowed) & (least[piece] >= -allowed)
+        columns = (piece, low, high, low_gap, high_gap, low_rate, high_rate)
+        piece, low, high, low_gap, high_gap, low_rate, high_rate = (column[open_] for column in columns)
         centre = 0.5 * (low + high)
-        between = gap(piece, centre)
-        np.minimum.at(least, piece, between)
+        gap, rate = look(piece, centre)
+        np.minimum.at(least, piece, gap)
         piece = np.concatenate([piece, piece])
         low, high = np.concatenate([low, centre]), np.concatenate([centre, high])
-        at_low, at_high = np.concatenate([at_low, between]), np.concatenate([between, at_high])
+        low_gap, high_gap = np.concatenate([low_gap, gap]), np.concatenate([gap, high_gap])
+        low_rate, high_rate = np.concatenate([low_rate, rate]), np.concatenate([rate, high_rate])
     return least
 
 
-def _from_segment(x0: Floats, y0: Floats, x1: Floats, y1: Floats, x: Floats, y: Floats) -> Floats:
-    dx, dy = x1 - x0, y1 - y0
-    share = np.clip(((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy), 0.0, 1.0)
-    return np.hypot(x - x0 - share * dx, y - y0 - share * dy)
+def _from_segment(core: Core, moving: Core, x: Floats, y: Floats, vx: Floats, vy: Floats) -> tuple[Floats, Floats]:
+    """Distance from a core and its rate of change; `moving` tells how the core turns or how its ends move."""
+    dx, dy = core.x1 - core.x0, core.y1 - core.y0
+    share = np.clip(((x - core.x0) * dx + (y - core.y0) * dy) / (dx * dx + dy * dy), 0.0, 1.0)
+    ex, ey = moving.vx1 - moving.vx0, moving.vy1 - moving.vy0
+    turns = moving.spin != 0.0  # then the tip's velocity has turned since
+    ex, ey = np.where(turns, -moving.spin * dy, ex), np.where(turns, moving.spin * dx, ey)
+    px, py = x - core.x0 - share * dx, y - core.y0 - share * dy
+    distance = np.hypot(px, py)
+    rate = px * (vx - moving.vx0 - share * ex) + py * (vy - moving.vy0 - share * ey)
+    return distance, rate / np.maximum(distance, 1e-300)
 
 
 def _bound(track: Track, middle: Floats, low: Floats, high: Floats, run: PartRun) -> Floats:

@@ -120,7 +120,7 @@ def test_the_runs_have_rows_of_every_kind():
 @pytest.mark.parametrize("point", [False, True])
 def test_random_moving_scenes_are_played_right(point):
     seen: Counter[int] = Counter()
-    for seed in range(soak_count(40, 3000)):
+    for seed in range(soak_count(100 if point else 25, 3000)):
         played = at_random(seed, point=point, seconds=SECONDS, max_events=EVENTS)
         if played is not None:
             assert played.problems() == [], seed

@@ -155,7 +155,8 @@ class PairChecks(RowChecks):
             self.say(index, f"nothing holds the ball against elements[{row.element}]")
         self.is_crushed, self.crushed_at, self.must_end = True, self.numbers[index], False
         state = State(row.time, row.x, row.y, 0.0, 0.0)
-        self.ways = [Way(state, Mode.RESTS, Bearer(row.element, row.nx, row.ny, 0.0, 0.0))]
+        bearer = None if own is None else Bearer(row.element, row.nx, row.ny, 0.0, 0.0)
+        self.ways = [Way(state, Mode.STANDS if bearer is None else Mode.RESTS, bearer)]
 
     def _has_no_room(self, index: int, row: Row) -> bool:
         room = 2.0 * CLEARANCE * self.extent

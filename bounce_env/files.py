@@ -1,0 +1,23 @@
+"""Writing files so that whoever looks sees the old one or the new one, never half of one."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Gives a path beside `path`, with the same suffix, to write to; renames it to `path` when that went well.
+
+    When it did not, nothing is left. The name is always the same: what a killed process leaves there is overwritten by
+    the next one.
+    """
+    unfinished = path.with_name(f".{path.stem}-unfinished{path.suffix}")
+    try:
+        yield unfinished
+        with unfinished.open("rb") as file:
+            os.fsync(file.fileno())
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)

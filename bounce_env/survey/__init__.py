@@ -1,0 +1,6 @@
+"""What random balls find in a scene: traps, endless scoring, targets that nothing reaches."""
+
+from bounce_env.survey.findings import Finding, findings
+from bounce_env.survey.run import Survey, survey
+
+__all__ = ["Finding", "Survey", "findings", "survey"]

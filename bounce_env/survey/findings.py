@@ -1,0 +1,143 @@
+"""What a survey has found, in words: problems of the scene, and notes on what is none."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.engine.overlap import describe
+from bounce_env.scene import Scene, Sensor
+from bounce_env.survey.follow import CRUSHES, DRAINED, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
+from bounce_env.survey.places import Cluster, clusters
+from bounce_env.survey.reach import reach_boxes, scores
+from bounce_env.survey.run import Survey, place_size
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A headline, and a line for each place, ball or element that it is about. problem: whether the scene fails by it."""
+
+    problem: bool
+    title: str
+    lines: tuple[str, ...] = ()
+
+
+def findings(survey: Survey) -> tuple[Finding, ...]:
+    """All that a survey has found, problems first. Balls are given with the start that brings them there again."""
+    found = (*_traps(survey), *_untouched(survey), *_endless(survey), *_lost(survey), *_broken(survey), *_notes(survey))
+    return tuple(sorted(found, key=lambda finding: not finding.problem))
+
+
+def _traps(survey: Survey) -> Iterator[Finding]:
+    rests, away = survey.fates["end"] == RESTS, ~_within_reach(survey)
+    yield from _by_place(survey, rests & away, "a ball comes to rest out of reach of every part that an agent moves")
+    title = f"a ball goes on out of reach of every part that an agent moves for {survey.seconds / 2:g} s or more"
+    yield from _by_place(survey, survey.fates["end"] == STUCK, title)
+
+
+def _untouched(survey: Survey) -> Iterator[Finding]:
+    goals = [index for index, element in enumerate(survey.scene.elements) if scores(element)]
+    never = [_name(survey.scene, index) for index in goals if survey.touched[index] == 0]
+    if never:
+        yield Finding(True, f"no ball of {_counted(len(survey.fates), 'ball')} touches what scores", tuple(never))
+    if not _can_end(survey.scene):
+        return
+    shut = [
+        f"{_name(survey.scene, index)}: {_counted(int(survey.touched[index]), 'ball')}"
+        for index in goals
+        if survey.touched[index] > 0 and survey.freely[index] == 0
+    ]
+    if shut:
+        yield Finding(True, "only balls that neither drain nor come within reach touch what scores", tuple(shut))
+
+
+def _endless(survey: Survey) -> Iterator[Finding]:
+    fates = survey.fates
+    rows = np.flatnonzero(fates["run"] > survey.limit)
+    rows = rows[np.argsort(-fates["run"][rows], kind="stable")]
+    if len(rows):
+        title = f"a ball scores more than {survey.limit} times without coming within reach of a part that an agent moves"
+        lines = [f"{_how_often(survey, row)}, {_start(survey, row)}" for row in rows.tolist()]
+        yield Finding(True, f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
+
+
+def _how_often(survey: Survey, row: int) -> str:
+    times = f"{survey.fates['run'][row]} times"
+    return f"{times} and no end" if survey.fates["end"][row] == ENDLESS else times
+
+
+def _lost(survey: Survey) -> Iterator[Finding]:
+    """A ball that was never in play may have started outside of the walls; one that was has found a hole in them."""
+    in_play = (survey.fates["scored"] > 0) | (survey.fates["reached"] >= 0.0)
+    lost = (survey.fates["end"] == LEFT) & in_play
+    yield from _by_place(survey, lost, "a ball that was in play leaves the scene and crosses no drain")
+
+
+def _broken(survey: Survey) -> Iterator[Finding]:
+    yield from _by_place(survey, survey.fates["end"] == CRUSHES, "a ball is crushed (status CRUSHED)")
+    title = "a ball has so many events that games would end (status BUDGET)"
+    yield from _by_place(survey, survey.fates["end"] == RATTLES, title)
+
+
+def _notes(survey: Survey) -> Iterator[Finding]:
+    ends, balls = survey.fates["end"], len(survey.fates)
+    if not reach_boxes(survey.scene):
+        yield Finding(False, "the scene has no part that an agent moves: nothing in it is within reach")
+    for end, words in (
+        (DRAINED, "drained"),
+        (LEFT, "left the scene and crossed no drain (what starts outside of the walls does)"),
+        (PLAYING, f"still in play after {survey.seconds:g} s"),
+    ):
+        count = int((ends == end).sum())
+        if count:
+            yield Finding(False, f"{words}: {_counted(count, 'ball')} ({count / balls:.1%})")
+    near = (ends == RESTS) & _within_reach(survey)
+    for finding in _by_place(survey, near, "a ball comes to rest within reach of a part that an agent moves"):
+        yield Finding(False, finding.title, finding.lines)
+
+
+def _by_place(survey: Survey, which: npt.NDArray[np.bool_], title: str) -> Iterator[Finding]:
+    rows = np.flatnonzero(which)
+    if len(rows) == 0:
+        return
+    places = np.column_stack([survey.fates["x"][rows], survey.fates["y"][rows]])
+    groups = clusters(places, 2.0 * place_size(survey.scene) or 1.0)
+    lines = (f"{_where(group)}: {_counted(len(group.rows), 'ball')}, {_start(survey, rows[group.rows[0]])}" for group in groups)
+    yield Finding(True, f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
+
+
+def _within_reach(survey: Survey) -> npt.NDArray[np.bool_]:
+    """Whether the balls ended within reach of a part that an agent moves."""
+    x, y = survey.fates["x"], survey.fates["y"]
+    within = np.zeros(len(x), np.bool_)
+    for x_min, y_min, x_max, y_max in reach_boxes(survey.scene):
+        within |= (x_min <= x) & (x <= x_max) & (y_min <= y) & (y <= y_max)
+    return within
+
+
+def _can_end(scene: Scene) -> bool:
+    return bool(reach_boxes(scene)) or any(isinstance(e, Sensor) and e.drain for e in scene.elements)
+
+
+def _where(group: Cluster) -> str:
+    return f"at x {_range(group.x_min, group.x_max)}, y {_range(group.y_min, group.y_max)} m"
+
+
+def _range(low: float, high: float) -> str:
+    first, last = f"{low:.4g}", f"{high:.4g}"
+    return first if first == last else f"{first} to {last}"
+
+
+def _start(survey: Survey, row: int) -> str:
+    """The start of a ball, with all digits: it takes the same way again."""
+    x, y, vx, vy = survey.starts[row].tolist()
+    return f"from position ({x!r}, {y!r}) velocity ({vx!r}, {vy!r})"
+
+
+def _name(scene: Scene, index: int) -> str:
+    return describe(scene.elements[index], index)
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -1,0 +1,150 @@
+"""The kernel that follows balls, one after the other and each alone in its world, from their starts to their ends.
+
+All that is compiled here is in this file: the binary that is kept on disk is checked against it.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.engine.disturb import place
+from bounce_env.engine.jit import borrow, function, kernel
+from bounce_env.engine.layout import CRUSHED, HELD, OUT, Array, State, Tables, borrow_state, borrow_tables, record
+from bounce_env.engine.loop import DONE, OUT_OF_BUDGET, clear_hits, restart, resume, run
+from bounce_env.engine.view import ball_now
+
+# How a ball ends.
+DRAINED, RESTS, ENDLESS, LEFT, STUCK, CRUSHES, RATTLES, PLAYING = 0, 1, 2, 3, 4, 5, 6, 7
+
+FATE = record(
+    end="i8",
+    time="f8", x="f8", y="f8", vx="f8", vy="f8",  # [s], [m], [m/s] at its end
+    run="i8",  # how often it scored at most without coming within reach of the agent
+    reached="f8",  # [s] when it was last within reach; -1 for never
+    scored="i8",  # how often it scored in all
+    events="i8",
+)  # fmt: skip
+
+# A ball is where it was while it is no farther away, for at least so many events.
+EVENTS_IN_PLACE = 8
+
+# Events in a thirtieth of a second, the usual step of a game; more is a ball that rattles itself to death.
+STEP_RATE = 30.0
+EVENTS_IN_STEP = 500
+
+
+class Watch(NamedTuple):
+    """What is looked for. Arrays are by element, those of `reach.with_borders`; `boxes` are `reach.reach_boxes`."""
+
+    scoring: Array  # (elements,) int8
+    borders: Array  # (elements,) int8: the sides of boxes
+    boxes: Array  # (parts, 4) [m]
+    bounds: Array  # (4,) [m] of the scene
+    seconds: float  # that a ball is followed
+    limit: int  # scores without coming within reach after which a ball is followed no longer
+    near: float  # [m] a ball that moves no farther stays in its place
+    still: float  # [s] for which it does so before it rests
+
+
+@function
+def _is_inside(boxes: Array, x: float, y: float) -> bool:
+    for i in range(boxes.shape[0]):
+        if boxes[i, 0] <= x <= boxes[i, 2] and boxes[i, 1] <= y <= boxes[i, 3]:
+            return True
+    return False
+
+
+@function
+def _look(state: State, watch: Watch, w: int, fate: Any, seen: Array, streak: int) -> int:
+    """Note what the last event touched; returns the scores since the ball was last within reach, -1 where it came so."""
+    came = False
+    if state.worlds[w].dirty:
+        for element in range(state.hits.shape[1]):
+            hits = state.hits[w, element]
+            if hits > 0:
+                seen[element] = 1
+                came = came or watch.borders[element] > 0
+                if watch.scoring[element] > 0:
+                    streak += hits
+                    fate.scored += hits
+        clear_hits(state, w)
+    return -1 if came else streak
+
+
+@function
+def _follow(state: State, tables: Tables, watch: Watch, w: int, start: Array, fate: Any, seen: Array) -> None:
+    """Follow one ball from `start` (x, y, vx, vy) and write down its fate and the elements that it has touched."""
+    world, ball = state.worlds[w], state.balls[w, 0]
+    restart(state, tables, w)
+    place(state, tables, w, 0, start[0], start[1], start[2], start[3])
+    streak, step, in_step = 0, 0, 0
+    x, y, since, in_place = start[0], start[1], 0.0, 0  # where it is, from when on and for how many events
+    fate.end, fate.run, fate.scored, fate.events, fate.reached = PLAYING, 0, 0, 0, -1.0
+    if _is_inside(watch.boxes, x, y):
+        fate.reached = 0.0
+    code = OUT_OF_BUDGET
+    while code != DONE:
+        resume(state, w)
+        code = run(state, tables, w, watch.seconds, 0.0, 1, None)
+        fate.events += 1
+        fate.x, fate.y, fate.vx, fate.vy = ball_now(state, tables, w, 0)
+        fate.time = world.time_hi
+        streak = _look(state, watch, w, fate, seen, streak)
+        if streak < 0 or _is_inside(watch.boxes, fate.x, fate.y):
+            streak, fate.reached = 0, fate.time
+        fate.run = max(fate.run, streak)
+        if ball.status == OUT:
+            fate.end = DRAINED
+            return
+        if ball.status == CRUSHED:
+            fate.end = CRUSHES
+            return
+        if streak > watch.limit:
+            fate.end = ENDLESS
+            return
+        if (fate.x - x) ** 2 + (fate.y - y) ** 2 > watch.near**2:
+            x, y, since, in_place = fate.x, fate.y, fate.time, 0
+        in_place += 1
+        if fate.time - since >= watch.still and (in_place > EVENTS_IN_PLACE or ball.contact == HELD):
+            fate.end = RESTS
+            return
+        if int(fate.time * STEP_RATE) != step:
+            step, in_step = int(fate.time * STEP_RATE), 0
+        in_step += 1
+        if in_step > EVENTS_IN_STEP:
+            fate.end = RATTLES
+            return
+    if ball.contact == HELD:
+        fate.end = RESTS
+    elif not (
+        watch.bounds[0] <= fate.x <= watch.bounds[2] and watch.bounds[1] <= fate.y <= watch.bounds[3]
+    ):
+        fate.end = LEFT
+    elif fate.reached < 0.5 * watch.seconds:
+        fate.end = STUCK
+
+
+@kernel
+def follow_balls(
+    state: State, tables: Tables, watch: Watch, w: int, starts: Array, fates: Array, touched: Array, freely: Array
+) -> None:
+    """Follow the balls of `starts` (balls, 4) in world `w`, into `fates` (balls,) FATE.
+
+    touched: (elements,) by how many balls; freely: by how many of those that also drained or came within reach. Both
+    are added to.
+    """
+    state, tables = borrow_state(state), borrow_tables(tables)
+    starts, fates = borrow(starts), borrow(fates)
+    seen = np.zeros(touched.shape[0], np.int8)
+    for i in range(starts.shape[0]):
+        seen[:] = 0
+        _follow(state, tables, watch, w, starts[i], fates[i], seen)
+        free = fates[i].end == DRAINED or fates[i].reached >= 0.0
+        for element in range(seen.shape[0]):
+            touched[element] += seen[element]
+            freely[element] += seen[element] if free else 0
+
+
+Fates = npt.NDArray[Any]
+"""Records of FATE, (balls,)."""

@@ -1,0 +1,56 @@
+"""Random starts of a ball anywhere in a scene."""
+
+import math
+from collections.abc import Iterator
+from itertools import islice
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.engine.overlap import cores_at_start, gaps
+from bounce_env.scene import Scene
+
+Floats = npt.NDArray[np.float64]
+
+TRIES = 1000
+"""Places in a row that are tried in vain before the scene counts as full."""
+
+
+def random_starts(scene: Scene, balls: int, seed: int) -> Floats:
+    """Starts of `balls` balls, (balls, 4): x, y [m], vx, vy [m/s].
+
+    Places are uniform over the scene's bounds where the ball overlaps nothing, directions uniform, speeds uniform up to
+    `fastest`. Raises ValueError where a ball finds no place.
+    """
+    generator = np.random.default_rng(seed)
+    speed, angle = generator.uniform(0.0, fastest(scene), balls), generator.uniform(0.0, 2.0 * math.pi, balls)
+    places = list(islice(_free_places(scene, generator), balls))
+    return np.column_stack([np.array(places), speed * np.cos(angle), speed * np.sin(angle)])
+
+
+def _free_places(scene: Scene, generator: np.random.Generator) -> Iterator[tuple[float, float]]:
+    left, bottom, right, top = scene.bounds
+    cores = cores_at_start(scene)
+    missed = 0
+    while missed < TRIES:
+        for x, y in generator.uniform((left, bottom), (right, top), (TRIES, 2)).tolist():
+            if all(gap >= 0.0 for _, gap in gaps(scene, cores, x, y)):
+                missed = 0
+                yield x, y
+            else:
+                missed += 1
+    raise ValueError(f"ball.radius = {scene.ball.radius!r}: no room for the ball in {missed} random places of the scene")
+
+
+def fastest(scene: Scene) -> float:
+    """Up to what speed balls start [m/s].
+
+    The scene's `max_speed`; without one, what a fall through the whole scene gives; without gravity, what crosses it in
+    a second.
+    """
+    if scene.max_speed is not None:
+        return scene.max_speed
+    left, bottom, right, top = scene.bounds
+    across = math.hypot(right - left, top - bottom)
+    pull = math.hypot(*scene.gravity)
+    return math.sqrt(2.0 * pull * across) if pull > 0.0 else across

@@ -1,12 +1,13 @@
 """The package's command line: `python -m bounce_env scenes|play`."""
 
-import importlib
 import sys
 from collections.abc import Sequence
 
 from gymnasium.error import DependencyNotInstalled
 
 from bounce_env.commands.words import BAD_USAGE, INTERRUPTED, Refused, complain
+
+EXTRAS = ("tyro", "tqdm", "imageio_ffmpeg")
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -15,13 +16,13 @@ def main(arguments: Sequence[str]) -> int:
     0: all is well. 1: problems were found. 2: what was asked for cannot be done, and a line on stderr says why.
     """
     try:
-        importlib.import_module("tyro")
-    except ImportError:
-        return complain('the commands need tyro, which is not installed: pip install "bounce_env[cli]"')
-    from bounce_env.commands.options import read  # noqa: PLC0415 (tyro is an extra)
+        from bounce_env.commands.options import read  # noqa: PLC0415 (tyro is an extra)
 
-    try:
         return read(arguments).run()
+    except ModuleNotFoundError as error:
+        if error.name not in EXTRAS:
+            raise
+        return complain(f'the commands need {error.name}, which is not installed: pip install "bounce_env[cli]"')
     except (Refused, DependencyNotInstalled) as error:
         return complain(str(error))
     except KeyboardInterrupt:

@@ -8,7 +8,7 @@ from tqdm import tqdm
 from bounce_env.commands.scenes import check_named, outline
 from bounce_env.commands.words import FINE, PROBLEMS, Refused, check_range, counted, say
 from bounce_env.scene import SceneError, load_scene
-from bounce_env.survey import Finding, Survey, findings, survey
+from bounce_env.survey import Finding, NoRoomError, Survey, findings, survey
 
 MOST_BALLS = 100_000_000
 MOST_SCORES = 1_000_000
@@ -44,7 +44,7 @@ def _is_wrong(source: str, run: Callable[..., Survey], balls: int, effort: str, 
         # disable=None: no bar where nobody sees it move.
         with tqdm(total=balls, unit=" balls", disable=None, leave=False) as bar:
             found = findings(run(scene, progress=bar.update))
-    except ValueError as error:
+    except NoRoomError as error:
         say(f"  problem: {error}")
         return True
     for finding in found:

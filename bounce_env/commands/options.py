@@ -25,7 +25,7 @@ class List:
 class Check:
     """Check scenes: print all that is wrong in their files, then let random balls find what is wrong with the play.
 
-    Each ball is alone in the scene, starts anywhere in it at up to max_speed, and nobody does anything. Problems are
+    Each ball is alone in the scene, starts anywhere inside of its walls at up to max_speed, and nobody does anything. Problems are
     places where balls rest or stay out of reach of every part that an agent moves (its reach: the box around all that
     it can sweep, wider by the ball's diameter), what scores but is never touched, balls that score too often
     without coming within reach, balls that leave the scene without crossing a drain, and balls that are crushed or

@@ -2,5 +2,6 @@
 
 from bounce_env.survey.findings import Finding, findings
 from bounce_env.survey.run import Survey, survey
+from bounce_env.survey.starts import NoRoomError
 
-__all__ = ["Finding", "Survey", "findings", "survey"]
+__all__ = ["Finding", "NoRoomError", "Survey", "findings", "survey"]

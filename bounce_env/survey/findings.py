@@ -68,10 +68,11 @@ def _how_often(survey: Survey, row: int) -> str:
 
 
 def _lost(survey: Survey) -> Iterator[Finding]:
-    """A ball that was never in play may have started outside of the walls; one that was has found a hole in them."""
-    in_play = (survey.fates["scored"] > 0) | (survey.fates["reached"] >= 0.0)
-    lost = (survey.fates["end"] == LEFT) & in_play
-    yield from _by_place(survey, lost, "a ball that was in play leaves the scene and crosses no drain")
+    """Of a table with an inside: there all balls started."""
+    rows = np.flatnonzero(survey.fates["end"] == LEFT).tolist()
+    if survey.is_table and rows:
+        title = f"a ball leaves the scene and crosses no drain: {_counted(len(rows), 'ball')}"
+        yield Finding(True, title, tuple(_start(survey, row) for row in rows))
 
 
 def _broken(survey: Survey) -> Iterator[Finding]:
@@ -84,14 +85,16 @@ def _notes(survey: Survey) -> Iterator[Finding]:
     ends, balls = survey.fates["end"], len(survey.fates)
     if not reach_boxes(survey.scene):
         yield Finding(False, "the scene has no part that an agent moves: nothing in it is within reach")
+    if not survey.is_table:
+        yield Finding(False, "walls and drains shut off no inside: balls start anywhere, and may leave the scene")
     for end, words in (
         (DRAINED, "drained"),
-        (LEFT, "left the scene and crossed no drain (what starts outside of the walls does)"),
+        (LEFT, "left the scene"),
         (PLAYING, f"still in play after {survey.seconds:g} s"),
     ):
         count = int((ends == end).sum())
         if count:
-            yield Finding(False, f"{words}: {_counted(count, 'ball')} ({count / balls:.1%})")
+            yield Finding(False, f"{words}: {_counted(count, 'ball')} ({100 * count / balls:.4g} %)")
     near = (ends == RESTS) & _within_reach(survey)
     for finding in _by_place(survey, near, "a ball comes to rest within reach of a part that an agent moves"):
         yield Finding(False, finding.title, finding.lines)

@@ -12,6 +12,7 @@ from bounce_env.engine.layout import new_state
 from bounce_env.engine.pack import pack
 from bounce_env.scene import Bumper, Scene
 from bounce_env.survey.follow import FATE, Fates, Watch, follow_balls
+from bounce_env.survey.inside import inside_of
 from bounce_env.survey.reach import reach_boxes, scores, with_borders
 from bounce_env.survey.starts import random_starts
 
@@ -35,11 +36,13 @@ class Survey:
     starts: (balls, 4) x, y [m], vx, vy [m/s]. fates: (balls,) records of `follow.FATE`. touched: how many balls touched
     the element; freely: how many of those that also drained or came within reach of a part that an agent moves.
     seconds: for which a ball was followed at most. limit: how often a ball may score without coming within reach.
+    is_table: whether the scene has an inside, in which all balls started.
     """
 
     scene: Scene
     seconds: float
     limit: int
+    is_table: bool
     starts: npt.NDArray[np.float64]
     fates: Fates
     touched: npt.NDArray[np.int64]
@@ -59,9 +62,10 @@ def survey(
 
     The same seed gives the same survey, and the motion is that of `World(scene)` to the bit. limit: how often a ball
     may score without coming within reach, 1 or more. `progress` is told after every few hundred balls how many they
-    were. Raises ValueError where the scene has no room for a ball.
+    were. Raises `starts.NoRoomError`.
     """
-    starts = random_starts(scene, balls, seed)
+    inside = inside_of(scene)
+    starts = random_starts(scene, inside, balls, seed)
     watched = with_borders(scene)
     tables = pack([watched])
     state = new_state(tables, 1, 1, point=scene.ball.radius == 0.0)
@@ -73,7 +77,7 @@ def survey(
         follow_balls(state, tables, watch, 0, starts[rows], fates[rows], touched, freely)
         progress(len(fates[rows]))
     own = len(scene.elements)
-    return Survey(scene, seconds, limit, starts, fates, touched[:own], freely[:own])
+    return Survey(scene, seconds, limit, inside is not None, starts, fates, touched[:own], freely[:own])
 
 
 def place_size(scene: Scene) -> float:

@@ -9,37 +9,45 @@ import numpy.typing as npt
 
 from bounce_env.engine.overlap import cores_at_start, gaps
 from bounce_env.scene import Scene
+from bounce_env.survey.inside import Inside
 
 Floats = npt.NDArray[np.float64]
 
-TRIES = 1000
+AT_ONCE = 1000
+"""Places that are drawn at a time."""
+
+TRIES = 10 * AT_ONCE
 """Places in a row that are tried in vain before the scene counts as full."""
 
 
-def random_starts(scene: Scene, balls: int, seed: int) -> Floats:
+class NoRoomError(ValueError):
+    """A scene in which no place was found for a ball."""
+
+
+def random_starts(scene: Scene, inside: Inside | None, balls: int, seed: int) -> Floats:
     """Starts of `balls` balls, (balls, 4): x, y [m], vx, vy [m/s].
 
-    Places are uniform over the scene's bounds where the ball overlaps nothing, directions uniform, speeds uniform up to
-    `fastest`. Raises ValueError where a ball finds no place.
+    Places are uniform over the inside of a table, or over the scene's bounds where there is none, as far as the ball
+    overlaps nothing; directions are uniform, speeds uniform up to `fastest`. Raises NoRoomError.
     """
     generator = np.random.default_rng(seed)
     speed, angle = generator.uniform(0.0, fastest(scene), balls), generator.uniform(0.0, 2.0 * math.pi, balls)
-    places = list(islice(_free_places(scene, generator), balls))
+    places = list(islice(_places(scene, inside, generator), balls))
     return np.column_stack([np.array(places), speed * np.cos(angle), speed * np.sin(angle)])
 
 
-def _free_places(scene: Scene, generator: np.random.Generator) -> Iterator[tuple[float, float]]:
+def _places(scene: Scene, inside: Inside | None, generator: np.random.Generator) -> Iterator[tuple[float, float]]:
     left, bottom, right, top = scene.bounds
     cores = cores_at_start(scene)
     missed = 0
     while missed < TRIES:
-        for x, y in generator.uniform((left, bottom), (right, top), (TRIES, 2)).tolist():
-            if all(gap >= 0.0 for _, gap in gaps(scene, cores, x, y)):
+        for x, y in generator.uniform((left, bottom), (right, top), (AT_ONCE, 2)).tolist():
+            missed += 1
+            within = inside is None or inside.holds(x, y)
+            if within and all(gap >= 0.0 for _, gap in gaps(scene, cores, x, y)):
                 missed = 0
                 yield x, y
-            else:
-                missed += 1
-    raise ValueError(f"ball.radius = {scene.ball.radius!r}: no room for the ball in {missed} random places of the scene")
+    raise NoRoomError(f"ball.radius = {scene.ball.radius!r}: no room for the ball in {missed} random places of the scene")
 
 
 def fastest(scene: Scene) -> float:

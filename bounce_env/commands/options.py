@@ -25,12 +25,12 @@ class List:
 class Check:
     """Check scenes: print all that is wrong in their files, then let random balls find what is wrong with the play.
 
-    Each ball is alone in the scene, starts anywhere inside of its walls at up to max_speed, and nobody does anything. Problems are
-    places where balls rest or stay out of reach of every part that an agent moves (its reach: the box around all that
-    it can sweep, wider by the ball's diameter), what scores but is never touched, balls that score too often
-    without coming within reach, balls that leave the scene without crossing a drain, and balls that are crushed or
-    have too many events. What scores: bumpers, what kicks, sensors but for drains, and elements whose names begin with
-    target, rollover or slingshot.
+    Each ball is alone in the scene, starts anywhere inside of its walls at up to max_speed, and nobody does anything.
+    Problems are places where balls rest or stay out of reach of every part that an agent moves (its reach: the box
+    around all that it can sweep, wider by the ball's diameter), what scores but is never touched, balls that score too
+    often without coming within reach, balls that leave the scene without crossing a drain, and balls that are crushed
+    or have too many events. What scores: bumpers, what kicks, sensors but for drains, and elements whose names begin
+    with target, rollover or slingshot.
 
     Every ball is printed with its start: World(scene).reset(position=..., velocity=...) takes the same way again.
     Exit code: 0 nothing found, 1 problems, 2 bad usage. A first check compiles for about a minute.
@@ -129,7 +129,7 @@ Command: TypeAlias = Annotated[Scenes, tyro.conf.subcommand("scenes")] | Annotat
 def read(arguments: Sequence[str]) -> Scenes | Play:
     """The command that the words give; for bad ones SystemExit with code 2, after a message."""
     command: Scenes | Play = tyro.cli(
-        Command,  # type: ignore[arg-type]
+        Command,
         prog=PROGRAM,
         args=arguments,
         description="Scenes and games of bounce_env.",

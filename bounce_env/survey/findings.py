@@ -16,7 +16,7 @@ from bounce_env.survey.run import Survey, place_size
 
 @dataclass(frozen=True)
 class Finding:
-    """A headline, and a line for each place, ball or element that it is about. problem: whether the scene fails by it."""
+    """A headline, and a line for each place, ball or element; problem: whether the scene fails by it."""
 
     problem: bool
     title: str
@@ -57,7 +57,9 @@ def _endless(survey: Survey) -> Iterator[Finding]:
     rows = np.flatnonzero(fates["run"] > survey.limit)
     rows = rows[np.argsort(-fates["run"][rows], kind="stable")]
     if len(rows):
-        title = f"a ball scores more than {survey.limit} times without coming within reach of a part that an agent moves"
+        title = (
+            f"a ball scores more than {survey.limit} times without coming within reach of a part that an agent moves"
+        )
         lines = [f"{_how_often(survey, row)}, {_start(survey, row)}" for row in rows.tolist()]
         yield Finding(True, f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
 
@@ -106,7 +108,10 @@ def _by_place(survey: Survey, which: npt.NDArray[np.bool_], title: str) -> Itera
         return
     places = np.column_stack([survey.fates["x"][rows], survey.fates["y"][rows]])
     groups = clusters(places, 2.0 * place_size(survey.scene) or 1.0)
-    lines = (f"{_where(group)}: {_counted(len(group.rows), 'ball')}, {_start(survey, rows[group.rows[0]])}" for group in groups)
+    lines = (
+        f"{_where(group)}: {_counted(len(group.rows), 'ball')}, {_start(survey, rows[group.rows[0]])}"
+        for group in groups
+    )
     yield Finding(True, f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
 
 

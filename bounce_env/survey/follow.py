@@ -40,7 +40,7 @@ class Watch(NamedTuple):
     scoring: Array  # (elements,) int8
     borders: Array  # (elements,) int8: the sides of boxes
     boxes: Array  # (parts, 4) [m]
-    bounds: Array  # (4,) [m] of the scene
+    bounds: tuple[float, float, float, float]  # [m] of the scene
     seconds: float  # that a ball is followed
     limit: int  # scores without coming within reach after which a ball is followed no longer
     near: float  # [m] a ball that moves no farther stays in its place
@@ -49,15 +49,15 @@ class Watch(NamedTuple):
 
 @function
 def _is_inside(boxes: Array, x: float, y: float) -> bool:
+    inside = False
     for i in range(boxes.shape[0]):
-        if boxes[i, 0] <= x <= boxes[i, 2] and boxes[i, 1] <= y <= boxes[i, 3]:
-            return True
-    return False
+        inside = inside or (boxes[i, 0] <= x <= boxes[i, 2] and boxes[i, 1] <= y <= boxes[i, 3])
+    return inside
 
 
 @function
 def _look(state: State, watch: Watch, w: int, fate: Any, seen: Array, streak: int) -> int:
-    """Note what the last event touched; returns the scores since the ball was last within reach, -1 where it came so."""
+    """Note what the last event touched; returns the scores since it was within reach, -1 where it came so."""
     came = False
     if state.worlds[w].dirty:
         for element in range(state.hits.shape[1]):
@@ -80,11 +80,10 @@ def _follow(state: State, tables: Tables, watch: Watch, w: int, start: Array, fa
     place(state, tables, w, 0, start[0], start[1], start[2], start[3])
     streak, step, in_step = 0, 0, 0
     x, y, since, in_place = start[0], start[1], 0.0, 0  # where it is, from when on and for how many events
-    fate.end, fate.run, fate.scored, fate.events, fate.reached = PLAYING, 0, 0, 0, -1.0
-    if _is_inside(watch.boxes, x, y):
-        fate.reached = 0.0
+    fate.end, fate.run, fate.scored, fate.events = PLAYING, 0, 0, 0
+    fate.reached = 0.0 if _is_inside(watch.boxes, x, y) else -1.0
     code = OUT_OF_BUDGET
-    while code != DONE:
+    while code != DONE and fate.end == PLAYING:
         resume(state, w)
         code = run(state, tables, w, watch.seconds, 0.0, 1, None)
         fate.events += 1
@@ -94,35 +93,40 @@ def _follow(state: State, tables: Tables, watch: Watch, w: int, start: Array, fa
         if streak < 0 or _is_inside(watch.boxes, fate.x, fate.y):
             streak, fate.reached = 0, fate.time
         fate.run = max(fate.run, streak)
-        if ball.status == OUT:
-            fate.end = DRAINED
-            return
-        if ball.status == CRUSHED:
-            fate.end = CRUSHES
-            return
-        if streak > watch.limit:
-            fate.end = ENDLESS
-            return
         if (fate.x - x) ** 2 + (fate.y - y) ** 2 > watch.near**2:
             x, y, since, in_place = fate.x, fate.y, fate.time, 0
-        in_place += 1
-        if fate.time - since >= watch.still and (in_place > EVENTS_IN_PLACE or ball.contact == HELD):
-            fate.end = RESTS
-            return
         if int(fate.time * STEP_RATE) != step:
             step, in_step = int(fate.time * STEP_RATE), 0
-        in_step += 1
-        if in_step > EVENTS_IN_STEP:
-            fate.end = RATTLES
-            return
+        in_place, in_step = in_place + 1, in_step + 1
+        stays = fate.time - since >= watch.still and (in_place > EVENTS_IN_PLACE or ball.contact == HELD)
+        fate.end = _end(watch, ball, streak, stays, in_step)
+    if fate.end == PLAYING:
+        fate.end = _end_in_time(watch, ball, fate)
+
+
+@function
+def _end(watch: Watch, ball: Any, streak: int, stays: bool, in_step: int) -> int:
+    """How the ball ended with its last event; PLAYING where it goes on."""
+    if ball.status == OUT:
+        return DRAINED
+    if ball.status == CRUSHED:
+        return CRUSHES
+    if streak > watch.limit:
+        return ENDLESS
+    if stays:
+        return RESTS
+    return RATTLES if in_step > EVENTS_IN_STEP else PLAYING
+
+
+@function
+def _end_in_time(watch: Watch, ball: Any, fate: Any) -> int:
+    """What a ball comes to that goes on for as long as it is followed."""
+    left, bottom, right, top = watch.bounds
     if ball.contact == HELD:
-        fate.end = RESTS
-    elif not (
-        watch.bounds[0] <= fate.x <= watch.bounds[2] and watch.bounds[1] <= fate.y <= watch.bounds[3]
-    ):
-        fate.end = LEFT
-    elif fate.reached < 0.5 * watch.seconds:
-        fate.end = STUCK
+        return RESTS
+    if not (left <= fate.x <= right and bottom <= fate.y <= top):
+        return LEFT
+    return STUCK if fate.reached < 0.5 * watch.seconds else PLAYING
 
 
 @kernel

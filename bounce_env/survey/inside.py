@@ -58,7 +58,7 @@ def inside_of(scene: Scene) -> Inside | None:
 
 def _free(scene: Scene, left: float, bottom: float, cell: float, columns: int, lines: int) -> npt.NDArray[np.bool_]:
     """Cells in whose middle a ball, made so large that no line is finer than the raster, overlaps nothing."""
-    closed = replace(scene, elements=[_shut(element) for element in scene.elements])
+    closed = replace(scene, elements=tuple(map(_shut, scene.elements)))
     cores = cores_at_start(closed)
     margin = max(0.0, cell - scene.ball.radius)
     room = np.empty((columns, lines), np.bool_)

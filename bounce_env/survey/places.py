@@ -19,7 +19,7 @@ class Cluster:
 
 
 def clusters(places: npt.NDArray[np.float64], near: float) -> list[Cluster]:
-    """Places (n, 2) [m] in groups whose members have a neighbour within about `near` > 0 [m], the largest group first."""
+    """Places (n, 2) [m] in groups whose members have others within about `near` > 0 [m], the largest first."""
     cells: dict[tuple[int, int], list[int]] = {}
     for row, (column, line) in enumerate(np.floor(places / near).astype(np.int64).tolist()):
         cells.setdefault((column, line), []).append(row)

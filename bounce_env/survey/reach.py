@@ -23,7 +23,7 @@ def scores(element: Element) -> bool:
 
 
 def reach_boxes(scene: Scene) -> tuple[Box, ...]:
-    """Where an agent can do something about a ball's centre: x_min, y_min, x_max, y_max [m] for each part that it moves.
+    """Where an agent can meet a ball's centre: x_min, y_min, x_max, y_max [m] for each part that it moves.
 
     The box around all that the part can sweep, wider by the ball's diameter, as far as it lies in the scene's bounds.
     """

@@ -94,7 +94,7 @@ def _watch(scene: Scene, elements: int, seconds: float, limit: int) -> Watch:
         scoring=scoring,
         borders=(np.arange(elements) >= own).astype(np.int8),
         boxes=np.array(reach_boxes(scene), np.float64).reshape(-1, 4),
-        bounds=np.array(scene.bounds),
+        bounds=scene.bounds,
         seconds=float(seconds),
         limit=ENDLESS_AT * limit,
         near=place_size(scene),

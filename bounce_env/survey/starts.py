@@ -47,7 +47,9 @@ def _places(scene: Scene, inside: Inside | None, generator: np.random.Generator)
             if within and all(gap >= 0.0 for _, gap in gaps(scene, cores, x, y)):
                 missed = 0
                 yield x, y
-    raise NoRoomError(f"ball.radius = {scene.ball.radius!r}: no room for the ball in {missed} random places of the scene")
+    raise NoRoomError(
+        f"ball.radius = {scene.ball.radius!r}: no room for the ball in {missed} random places of the scene"
+    )
 
 
 def fastest(scene: Scene) -> float:

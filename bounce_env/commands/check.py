@@ -12,7 +12,7 @@ from bounce_env.survey import Finding, NoRoomError, Survey, findings, survey
 
 MOST_BALLS = 100_000_000
 MOST_SCORES = 1_000_000
-LEAST_SECONDS, MOST_SECONDS = 5.0, 3600.0
+LEAST_SECONDS, MOST_SECONDS = 10.0, 3600.0
 
 
 def check_scenes(files: Sequence[str], *, balls: int, seed: int, seconds: float, scores: int, show: int) -> int:

@@ -21,6 +21,7 @@ BACKGROUND, FAINT, BRIGHT, ALARM = (12, 14, 28), (150, 160, 196), (240, 243, 255
 DIMMED = 4  # parts in 10 of the game's brightness that are left behind a text
 
 SMALLEST = 9  # pixels: of letters that can still be read
+CUT = "..."
 GAP = "    "  # between two words of the help
 
 
@@ -74,10 +75,12 @@ class Screen:
             target.blit(self._line(session.message, FAINT, self._text), (self._row // 2, y))
 
     def _rendered(self, text: str, color: Color, size: int) -> "pygame.Surface":
-        """A line of text, in smaller letters where it is wider than the window."""
+        """A line of text, in smaller letters where it is wider than the window; of what is too long even so, the end."""
         room = self.size[0] - self._row
         while size > SMALLEST and self._font(size).size(text)[0] > room:
             size -= 1
+        while len(text) > len(CUT) and self._font(size).size(text)[0] > room:
+            text = CUT + text[len(CUT) + 1 :]
         return self._font(size).render(text, True, color)
 
     def _font(self, size: int) -> "pygame.font.Font":

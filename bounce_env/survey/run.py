@@ -22,7 +22,7 @@ BALLS_AT_ONCE = 500
 ENDLESS_AT = 10
 """A ball that has scored so many times more often than it may without coming within reach is followed no longer."""
 
-STILL = 3.0
+STILL = 10.0
 """A ball that stays in its place for so long [s] rests, unless a bumper that moves may still come by."""
 
 SMALLEST_PLACE = 0.002

@@ -1,22 +1,10 @@
 """Writing files so that whoever looks sees the old one or the new one, never half of one."""
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
+from bounce_env.files import replacing
 
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Gives a path beside `path`, with the same suffix, to write to; renames it to `path` when that went well.
-
-    The name is always the same: what a killed process leaves there is overwritten by the next one.
-    """
-    unfinished = path.with_name(f".{path.stem}-unfinished{path.suffix}")
-    yield unfinished
-    with unfinished.open("rb") as file:
-        os.fsync(file.fileno())
-    unfinished.replace(path)
+__all__ = ["replacing", "write_text"]
 
 
 def write_text(path: Path, text: str) -> None:

@@ -75,7 +75,7 @@ class Screen:
             target.blit(self._line(session.message, FAINT, self._text), (self._row // 2, y))
 
     def _rendered(self, text: str, color: Color, size: int) -> "pygame.Surface":
-        """A line of text, in smaller letters where it is wider than the window; of what is too long even so, the end."""
+        """A line of text, in smaller letters where it is too wide for the window; where even these are, its end."""
         room = self.size[0] - self._row
         while size > SMALLEST and self._font(size).size(text)[0] > room:
             size -= 1

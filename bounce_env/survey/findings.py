@@ -32,8 +32,9 @@ def findings(survey: Survey) -> tuple[Finding, ...]:
 def _traps(survey: Survey) -> Iterator[Finding]:
     rests, away = survey.fates["end"] == RESTS, ~_within_reach(survey)
     yield from _by_place(survey, rests & away, "a ball comes to rest out of reach of every part that an agent moves")
-    title = f"a ball goes on out of reach of every part that an agent moves for {survey.seconds / 2:g} s or more"
-    yield from _by_place(survey, survey.fates["end"] == STUCK, title)
+    if _can_end(survey.scene):
+        title = f"a ball goes on out of reach of every part that an agent moves for {survey.seconds / 2:g} s or more"
+        yield from _by_place(survey, survey.fates["end"] == STUCK, title)
 
 
 def _untouched(survey: Survey) -> Iterator[Finding]:
@@ -94,7 +95,7 @@ def _notes(survey: Survey) -> Iterator[Finding]:
         (LEFT, "left the scene"),
         (PLAYING, f"still in play after {survey.seconds:g} s"),
     ):
-        count = int((ends == end).sum())
+        count = int(((ends == end) | ((ends == STUCK) & (end == PLAYING))).sum())
         if count:
             yield Finding(False, f"{words}: {_counted(count, 'ball')} ({100 * count / balls:.4g} %)")
     near = (ends == RESTS) & _within_reach(survey)
@@ -125,6 +126,7 @@ def _within_reach(survey: Survey) -> npt.NDArray[np.bool_]:
 
 
 def _can_end(scene: Scene) -> bool:
+    """Whether a ball can drain or come within reach at all; in a closed box that is watched it cannot."""
     return bool(reach_boxes(scene)) or any(isinstance(e, Sensor) and e.drain for e in scene.elements)
 
 

@@ -135,6 +135,13 @@ def test_a_ball_still_in_play_is_no_problem():
     assert problems(ended(SOUND, PLAYING)) == []
 
 
+def test_in_a_box_from_which_nothing_leads_no_ball_is_stuck():
+    closed = replace(SOUND, elements=SOUND.elements[:4])
+    result = replace(ended(SOUND, STUCK), scene=closed)
+    assert problems(result) == []
+    assert "still in play after 20 s: 1 ball (100 %)" in [found.title for found in findings(result)]
+
+
 def test_a_ball_that_scores_on_is_followed_no_longer():
     result = surveyed(POCKET, limit=5)
     runs = result.fates["run"][result.fates["end"] == ENDLESS]

@@ -1,5 +1,7 @@
 """What a survey is made of: what scores, what is within reach, the inside, starts, places that are one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tables import CUP, SOUND, box, table
@@ -69,6 +71,8 @@ def test_a_table_with_a_hole_has_no_inside():
     assert inside_of(Scene(elements=sides, ball=Ball(radius=0.02))) is None
     assert inside_of(Scene(elements=sides, ball=Ball(radius=0.06))) is not None  # the hole is too small for it
     assert inside_of(Scene()) is None
+    gate = replace(sides[2], end=(1, 0), one_way=True)
+    assert inside_of(Scene(elements=(*sides[:2], gate, sides[3]), ball=Ball(radius=0.02))) is not None
 
 
 def test_balls_start_inside_where_nothing_is_in_their_way():
@@ -87,6 +91,11 @@ def test_a_scene_that_is_full_says_so():
     full = Scene(elements=box(0, 0, 1, 1), ball=Ball(radius=0.6))
     with pytest.raises(NoRoomError, match=r"ball\.radius = 0\.6: no room"):
         random_starts(full, None, 1, 0)
+
+
+def test_many_places_in_vain_do_not_count_against_those_that_follow():
+    tight = Scene(elements=box(0, 0, 1, 1), ball=Ball(radius=0.48))  # one place in 600
+    assert len(random_starts(tight, None, 30, 0)) == 30
 
 
 def test_how_fast_balls_start():

@@ -33,7 +33,7 @@ class Check:
     with target, rollover or slingshot.
 
     Every ball is printed with its start: World(scene).reset(position=..., velocity=...) takes the same way again.
-    Exit code: 0 nothing found, 1 problems, 2 bad usage. The first check of a kind of scene compiles for one to three minutes.
+    Exit code: 0 nothing found, 1 problems, 2 bad usage. A first check compiles for one to three minutes.
     """
 
     files: Annotated[tuple[str, ...], tyro.conf.Positional]

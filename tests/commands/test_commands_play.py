@@ -42,7 +42,7 @@ def test_a_play_of_some_frames_ends_with_its_score(tmp_path, monkeypatch, capsys
 )
 def test_bad_usage_is_told_in_a_line(words, error, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main(["play", *words.split()]) == 2
+    assert main(["play", *words.split(), *([] if "--frames" in words else ["--frames", "1"])]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
     assert printed.err.startswith(f"error: {error}")

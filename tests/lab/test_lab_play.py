@@ -201,6 +201,7 @@ def test_texts_are_within_the_picture(size):
     session.press("p")
     paused = screen.draw(session)
     assert paused[:height, 2:-2].max() > 230  # bright letters on what is dimmed
+    assert np.median(paused[:height]) < 0.5 * np.median(calm[:height])
     assert paused[:height, :2].max() < 120
     assert paused[:height, -2:].max() < 120
 
@@ -217,3 +218,14 @@ def test_what_is_filmed_and_how_it_ended_is_on_the_screen(session):
     play_out(session)
     assert screen.draw(session)[:height].max() > 230
     assert (screen.draw(session)[:height] != session.frame).any()
+
+
+def test_a_narrow_window_has_the_help_on_more_lines_and_smaller_letters():
+    def screen_of(width):
+        env = gym.make("Bounce/Paddle-v0", render_mode="rgb_array", frame_skip=1, width=width, height=160)
+        return Screen(Session(env, 3, lambda: None))
+
+    narrow, wide = screen_of(120), screen_of(900)
+    assert narrow.size[1] > wide.size[1]
+    one, other = (screen._rendered("Game over", (255, 255, 255), 60) for screen in (narrow, wide))
+    assert one.get_height() < other.get_height()

@@ -46,8 +46,7 @@ class Renderer:
         }
         self._ball = painter.Sprite(ball_look(scene, self.projection))
         blank = painter.still_picture(*size, [])
-        differs: npt.NDArray[np.bool_] = np.not_equal(self._background, blank)
-        inked = differs.any(axis=2)
+        inked = np.abs(self._background.astype(np.int16) - blank).sum(axis=2) > 0
         self._label = painter.Label(*_label_place(scene, self.projection, inked))
 
     def frame(self, picture: Picture) -> npt.NDArray[np.uint8]:

@@ -11,17 +11,15 @@ from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.parts import core_at, plan_zones, side_of_part, surface_velocity, turn_of
 from bounce_env.engine.resolve import log
 from bounce_env.engine.search import plan_parts, pull, resolve_next
-from bounce_env.engine.tolerances import CLEARANCE
+from bounce_env.engine.tolerances import CLEARANCE, ULPS_OF_SPEED
 from bounce_env.engine.touch import on_capsule
 
 
 @routine
-def crush(
-    state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, vx: float, vy: float, ledger: Table
-) -> None:
+def crush(state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, ledger: Table) -> None:
     """Stop the part that crushes ball `k`, and hold the ball until a command opens the gap.
 
-    A part that shuttles turns back instead. (vx, vy): the ball's velocity [m/s] before.
+    A part that shuttles turns back instead.
     """
     if motions is None or parts is None:
         return
@@ -32,6 +30,7 @@ def crush(
         ball.status, ball.struck, ball.squeezes = OK, -1, 0
         resolve_next(ball)
     else:
+        vx, vy = ball.vx, ball.vy
         ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
         ball.contact, ball.rides, ball.support, ball.settling = HELD, -1, part.element, 0
         ball.nx, ball.ny = ball.snx, ball.sny
@@ -62,10 +61,10 @@ def mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w: 
         if distance - part.reach > 2.0 * CLEARANCE * tables.scenes[world.scene].extent:
             continue
         vx, vy = surface_velocity(motion, part, turn, ends, ux, uy, front, nearest * ux, nearest * uy)
-        closing = vx * nx + vy * ny
-        if closing > 0.0:
+        closing, rounding = vx * nx + vy * ny, ULPS_OF_SPEED * (abs(vx) + abs(vy))
+        if closing > rounding:
             hold_still(motion, ends, part)
-        elif closing < 0.0:
+        elif closing < -rounding:
             _free(state, tables, motions, parts, w, k, m)
 
 

@@ -63,7 +63,7 @@ def slow_down(state: State, tables: Tables, drags: Table, w: int) -> None:
     if drags is None:
         return
     world = state.worlds[w]
-    if world.drag_hi == world.time_hi and world.drag_lo == world.time_lo:
+    if drags[world.scene] == 1.0 or (world.drag_hi == world.time_hi and world.drag_lo == world.time_lo):
         return
     world.drag_hi, world.drag_lo = world.time_hi, world.time_lo
     for k in range(state.balls.shape[1]):

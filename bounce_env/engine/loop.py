@@ -172,11 +172,10 @@ def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     end_flight(ball, tables, scene, gx, gy, t, ball.next_hi, ball.next_lo)
     snap(state, tables, w, k)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
-    vx, vy = ball.vx, ball.vy
     at_once = t == 0.0 and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
     resolve(state, tables, w, k, at_once, ledger)
     if ball.status == CRUSHED:
-        crush(state, tables, state.motions, tables.parts, w, k, vx, vy, ledger)
+        crush(state, tables, state.motions, tables.parts, w, k, ledger)
 
 
 @function

@@ -48,7 +48,10 @@ def pack(scenes: Sequence[Scene]) -> Tables:
     edges = _table(EDGE, scenes, _edges)
     parts = _table(PART, scenes, _parts)
     rows = (_faces, _circles, _arcs, _sensors, _rings, _edges, _parts)
-    heads = [(*(len(of(s)) for of in rows), extent(s), _cap(s), s.rest_speed, s.ball.radius, s.ball.b) for s in scenes]
+    heads = [
+        (len(s.elements), *(len(of(s)) for of in rows), extent(s), _cap(s), s.rest_speed, s.ball.radius, s.ball.b)
+        for s in scenes
+    ]
     elements = _table(ELEMENT, scenes, _materials)
     gravity = np.array([scene.gravity for scene in scenes], np.float64)
     return Tables(

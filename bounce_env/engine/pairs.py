@@ -173,7 +173,7 @@ def _jam(state: State, tables: Tables, w: int, k: int, j: int, nx: float, ny: fl
         ball.contact, ball.support = FLYING, -1  # that contact does not begin
     vx, vy = ball.vx, ball.vy
     ball.vx, ball.vy, ball.settling = 0.0, 0.0, JAMMED
-    log(ledger, world, ball, k, tables.elements.shape[1] + j, BOUNCE, nx, ny, vx, vy, other.vx, other.vy)
+    log(ledger, world, ball, k, tables.scenes[world.scene].elements + j, BOUNCE, nx, ny, vx, vy, other.vx, other.vy)
 
 
 @function
@@ -202,7 +202,7 @@ def _exchange(
     _cap(one, other, nx, ny, head.max_speed, world)
     _cap(other, one, -nx, -ny, head.max_speed, world)
     world.bounces += 1
-    elements = tables.elements.shape[1]
+    elements = head.elements
     log(ledger, world, one, k, elements + j, BOUNCE, nx, ny, vx, vy, ux, uy)
     log(ledger, world, other, j, elements + k, BOUNCE, -nx, -ny, ux, uy, vx, vy)
 

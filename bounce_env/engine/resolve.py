@@ -84,8 +84,9 @@ def along_speed(ball: Record, touch: Record) -> float:
 
 @function
 def towards(touch: Record) -> float:
-    """How fast [m/s] a touched surface itself moves towards the ball; 0 where it stands."""
-    return touch.ux * touch.nx + touch.uy * touch.ny
+    """How fast [m/s] a touched surface itself moves towards the ball; 0 where it stands, or slides along it."""
+    speed = touch.ux * touch.nx + touch.uy * touch.ny
+    return speed if abs(speed) > ULPS_OF_SPEED * (abs(touch.ux) + abs(touch.uy)) else 0.0
 
 
 @function
@@ -140,7 +141,7 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
     i, _ = fastest_closing(ball, state.touches, w)
     vx, vy = ball.vx, ball.vy
     if i >= 0 and not _project(ball, state.touches, w, i):
-        ball.status = CRUSHED
+        ball.status, ball.vx, ball.vy = CRUSHED, vx, vy
     return -1, i, vx, vy
 
 

@@ -92,7 +92,7 @@ def _label_place(scene: Scene, projection: Projection, inked: npt.NDArray[np.boo
     left, top, right = left + inset, top + inset // 2, right - inset
     width, height = round(2.3 * size), round(0.8 * size)
     for y in range(top, top + round(0.2 * (bottom - top)) - height):
-        blocked = inked[y : y + height, left:right].any(axis=0)
+        blocked = np.logical_or.reduce(inked[y : y + height, left:right], axis=0)
         free = np.convolve(blocked, np.ones(width, int), "valid") == 0 if blocked.size >= width else np.zeros(0, bool)
         if free.any():
             x = int(free.argmax())

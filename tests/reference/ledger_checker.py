@@ -138,10 +138,7 @@ class _Check(PairChecks):
         met = row.element >= len(self.scene.elements)
         if self.is_crushed and not met:
             self.say(index, "the ball is crushed")
-        before = row.before
-        if row.kind == CRUSH and any(r.before == before for r in self.at_instant(index)):
-            before = self.ways[0].state[3:]  # of bounces and a crush at one instant each tells how the ball came
-        self.arrive(index, State(row.time, row.x, row.y, *before), row.kind, row.element)
+        self.arrive(index, State(row.time, row.x, row.y, *row.before), row.kind, row.element)
         match row.kind:
             case 0 if met:
                 self.meets(index, row)

@@ -12,7 +12,7 @@ from ledger_checker import BUDGET, End, Start, find_problems_of_all
 from ledger_drive import Command, Value
 from moving_scenes import command_at_random, moving_scene
 from moving_scenes import start as place_at_random
-from stability_case import everything, new_world
+from stability_case import new_world
 
 from bounce_env.engine.world import World
 from bounce_env.scene import Ball, Bumper, Element, Flipper, Paddle, Scene, Wall
@@ -43,7 +43,7 @@ def run(
         if name:
             world.command(name, value)
             given.append((time, name, value))
-    return Played(scene, starts, in_scene(scene, pages), ends_of(world, seconds), tuple(given))
+    return Played(scene, starts, np.concatenate(pages), ends_of(world, seconds), tuple(given))
 
 
 def at_random(seed: int, *, point: bool, seconds: float, max_events: int) -> Played | None:
@@ -66,7 +66,7 @@ def at_random(seed: int, *, point: bool, seconds: float, max_events: int) -> Pla
         piece = float(rng.choice([0.0078125, 0.125, 0.5]))
         pages.append(world.advance(piece, ledger=True, max_events=max_events))
         time += piece
-    return Played(scene, starts, in_scene(scene, pages), ends_of(world, time), tuple(told))
+    return Played(scene, starts, np.concatenate(pages), ends_of(world, time), tuple(told))
 
 
 class Recorder:
@@ -90,17 +90,6 @@ def starts_of(world: World) -> list[Start]:
 def ends_of(world: World, asked: float) -> list[End]:
     rows = zip(world.position.tolist(), world.velocity.tolist(), world.status.tolist(), strict=True)
     return [End(world.time, tuple(place), tuple(speed), status, asked) for place, speed, status in rows]
-
-
-def in_scene(scene: Scene, pages: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """The ledger as the scene alone would have it.
-
-    Beside a scene of more elements the numbers of balls begin after those of that one.
-    """
-    ledger = np.concatenate(pages)
-    most = max(len(scene.elements), len(everything(scene.ball.radius == 0.0).elements))
-    ledger["element"][ledger["element"] >= most] -= most - len(scene.elements)
-    return ledger
 
 
 # ---- made by hand: between them they have rows of every kind that moving parts and several balls bring

@@ -34,12 +34,12 @@ def named(
     env_id, env_kwargs: None for what the run was trained on. Raises Refused for a name that is neither, and where the
     trained agent cannot play what is asked.
     """
-    known = BASELINES.get(env_id or DEFAULT_ENV_ID, {})
-    if name in known:
-        task = Task(env_id or DEFAULT_ENV_ID, env_kwargs or {})
-        return task, {name: known[name](task)}
     if not Path(name).is_dir():
-        raise Refused(f"{name!r}: must be a run folder, or, for {env_id or DEFAULT_ENV_ID}, one of {', '.join(known)}")
+        task = Task(env_id or DEFAULT_ENV_ID, env_kwargs or {})
+        known = BASELINES[task.env_id]
+        if name not in known:
+            raise Refused(f"{name!r}: must be a run folder, or, for {task.env_id}, one of {', '.join(known)}")
+        return task, {name: known[name](task)}
     run = open_run(Path(name))
     task = Task(
         run.task.env_id if env_id is None else env_id, run.task.env_kwargs if env_kwargs is None else env_kwargs

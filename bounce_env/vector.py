@@ -1,6 +1,7 @@
 """The vector environments: many worlds of one game in one batch, without a Python object per world."""
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import Any, ClassVar
 
 import gymnasium as gym
@@ -71,6 +72,9 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         steps = None if max_episode_steps == -1 else max_episode_steps
         if steps is not None and not _whole(steps):
             raise ValueError(f"max_episode_steps = {steps!r}: must be None, -1 or a whole number >= 1")
+        unknown = sorted(set(options) - {field.name for field in fields(self.options_type)})
+        if unknown:
+            raise TypeError(f"{type(self).__name__} got unexpected keyword arguments: {', '.join(unknown)}")
         game = self.game_type(self.options_type(**options)).with_step_limit(steps)
         Projection.fit(game.scenes[0].bounds, width, height)  # a bad size is told now, not at the first frame
         mode = _autoreset_mode(autoreset_mode)

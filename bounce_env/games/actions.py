@@ -25,7 +25,9 @@ class Continuous:
         """Raises ValueError for another shape or type; whether they are finite the kernel asks."""
         lone = self.size == 1 and (actions.shape == (worlds,) or (worlds == 1 and actions.shape == ()))
         if not (lone or actions.shape == (worlds, self.size) or (worlds == 1 and actions.shape == (self.size,))):
-            raise ValueError(f"actions of shape {actions.shape}: must be {worlds} rows, {self.size} numbers per world")
+            each = "one" if self.size == 1 else str(self.size)
+            what = f"{worlds * self.size} numbers, {each} per world"
+            raise ValueError(f"actions of shape {actions.shape}: must be {what}")
         if actions.dtype.kind not in "fiu":
             raise ValueError(f"actions = {actions!r}: must be numbers")
         return actions.reshape(worlds, self.size).astype(np.float64, copy=False)

@@ -31,7 +31,7 @@ from bounce_env.games.game import Game, frame_limit
 from bounce_env.games.options import PaddleOptions
 from bounce_env.games.rules import is_game
 from bounce_env.games.streams import LAUNCHES, uniform
-from bounce_env.scene import Bumper, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
 
 # The launch: place as shares of the field, so that it fits the scenes of users, too.
 LAUNCH_X = (0.2, 0.8)
@@ -47,7 +47,7 @@ OBSERVATION_SIZE = 5
 FIELD = record(
     x="f8", width="f8", y="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
     x_scale="f8", y_scale="f8", rail_scale="f8",  # [1/m] from metres to the observation
-    paddle="i8",  # its element
+    paddle="i8", part="i8",  # its element, and which of the parts it is
 )  # fmt: skip
 
 
@@ -87,14 +87,14 @@ def field_of(scene: Scene) -> tuple[float, float, float, float]:
     Raises ValueError where the scene cannot be played: it must have exactly one paddle, a drain, a bumper, a ball with
     a radius and a `max_speed`.
     """
-    walls = [e for e in scene.elements if isinstance(e, Wall)]
+    walls = [e for e in scene.elements if isinstance(e, Wall | Arc)]
     drains = [e for e in scene.elements if isinstance(e, Sensor) and e.drain]
     paddles = sum(isinstance(e, Paddle) for e in scene.elements)
     needs = {
         f"paddles = {paddles}: must be exactly 1": paddles == 1,
         "drains = 0: must be at least 1 (a sensor with drain = true)": drains,
         "bumpers = 0: must be at least 1": any(isinstance(e, Bumper) for e in scene.elements),
-        "walls = 0: must be at least 1": walls,
+        "walls = 0: must be at least 1": any(isinstance(e, Wall) for e in walls),
         "ball.radius = 0.0: must be > 0": scene.ball.radius > 0.0,
         "max_speed = None: must be given": scene.max_speed is not None,
     }
@@ -116,7 +116,8 @@ def new_rules(scenes: tuple[Scene, ...], options: PaddleOptions) -> Rules:
         rail = scene.elements[paddle]
         assert isinstance(rail, Paddle)
         span = direction(rail.rail_start, rail.rail_end)[2]
-        fields[s] = (x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, paddle)
+        part = [i for i, _ in scene.parts].index(paddle)
+        fields[s] = (x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, paddle, part)
         points[s, : len(scene.elements)] = [POINTS * isinstance(e, Bumper) for e in scene.elements]
     repeat = options.repeat_action_probability
     return Rules(fields, points, float(FPS), options.frame_skip, frame_limit(options), repeat, MAX_EVENTS)
@@ -142,7 +143,7 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     out[w, 2] = vx * (1.0 / REFERENCE_SPEED)
     out[w, 3] = vy * (1.0 / REFERENCE_SPEED)
     # The product may exceed the ends of the range by its rounding.
-    out[w, 4] = min(max(paddle_offset(state, state.motions, w) * field.rail_scale - 1.0, -1.0), 1.0)
+    out[w, 4] = min(max(paddle_offset(state, state.motions, field.part, w) * field.rail_scale - 1.0, -1.0), 1.0)
     if out.shape[1] > OBSERVATION_SIZE:
         out[w, OBSERVATION_SIZE] = clipped(worlds.held[w, 0])
 
@@ -154,11 +155,11 @@ def clipped(action: float) -> float:
 
 
 @function
-def paddle_offset(state: State, motions: Table, w: int) -> float:
+def paddle_offset(state: State, motions: Table, m: int, w: int) -> float:
     """Where the paddle is on its rail now [m]."""
     if motions is None:
         return 0.0
-    return offset_at(motions[w, 0], state.worlds[w].time_hi, state.worlds[w].time_lo)
+    return offset_at(motions[w, m], state.worlds[w].time_hi, state.worlds[w].time_lo)
 
 
 @function
@@ -191,12 +192,13 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     state, tables, episode = worlds.state, worlds.tables, worlds.episodes[w]
     clear_hits(state, w)
     resume(state, w)
+    part = rules.fields[state.worlds[w].scene].part
     frames = 1 if rules.repeat > 0.0 else rules.frame_skip
     code = DONE
     last = episode.frames + rules.frame_skip
     while episode.frames < last:
         hold_action(worlds, actions, w, rules.repeat)
-        move(state, tables, state.motions, tables.parts, w, clipped(worlds.held[w, 0]))
+        move(state, tables, state.motions, tables.parts, part, w, clipped(worlds.held[w, 0]))
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
         code = run(state, tables, w, episode.frames / rules.fps, 0.0, rules.max_events, None)
@@ -229,7 +231,7 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
         return False
     until = frames / rules.fps
     action = clipped(actions[w, 0])
-    if rules.repeat > 0.0 or not steer(state, tables, tables.parts, w, action):
+    if rules.repeat > 0.0 or not steer(state, tables, tables.parts, rules.fields[world.scene].part, w, action):
         return False
     if not is_calm(state.balls, state.pairs, state.motions, tables.parts, w, world.scene, until, 0.0):
         return False
@@ -244,21 +246,21 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
 
 
 @function
-def steer(state: State, tables: Tables, parts: Table, w: int, action: float) -> bool:
+def steer(state: State, tables: Tables, parts: Table, m: int, w: int, action: float) -> bool:
     """As `move`, where no ball is near the paddle; otherwise it does nothing and returns False."""
     if parts is None:
         return True
     world = state.worlds[w]
-    velocity = action * parts[world.scene, 0].up_speed
-    return command_unwatched(world, state.motions, parts, state.zones, tables.drags, w, 0, velocity)
+    velocity = action * parts[world.scene, m].up_speed
+    return command_unwatched(world, state.motions, parts, state.zones, tables.drags, w, m, velocity)
 
 
 @function
-def move(state: State, tables: Tables, motions: Any, parts: Any, w: int, action: float) -> None:
+def move(state: State, tables: Tables, motions: Any, parts: Any, m: int, w: int, action: float) -> None:
     """Let the paddle move at `action` (-1 to 1) times its greatest speed."""
     if motions is None or parts is None:
         return
-    command(state, tables, motions, parts, w, 0, action * parts[state.worlds[w].scene, 0].up_speed)
+    command(state, tables, motions, parts, w, m, action * parts[state.worlds[w].scene, m].up_speed)
 
 
 @function

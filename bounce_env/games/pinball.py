@@ -1,18 +1,16 @@
 """The rules of the pinball game: points, lamps, balls, and what keeps a player from doing nothing for points."""
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.command import command
 from bounce_env.engine.disturb import disturb, place
-from bounce_env.engine.instant import since
-from bounce_env.engine.jit import Table, borrow, function
-from bounce_env.engine.layout import OUT, Array, State, record
+from bounce_env.engine.jit import Table, function
+from bounce_env.engine.layout import OUT, Array, State
 from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
-from bounce_env.engine.parts import offset_at
 from bounce_env.engine.view import ball_now
 from bounce_env.games.actions import Buttons, Discrete
 from bounce_env.games.episode import (
@@ -28,181 +26,55 @@ from bounce_env.games.episode import (
 )
 from bounce_env.games.game import Game, frame_limit
 from bounce_env.games.options import PinballOptions
+from bounce_env.games.pinball_points import count_points
+from bounce_env.games.pinball_rules import (
+    DUE,
+    FLIPS,
+    HOLD_FRAMES,
+    HOLD_RELEASED,
+    LAUNCH_FRAMES,
+    LEFT,
+    MEMORY,
+    NO,
+    NUDGE,
+    NUDGE_COST,
+    NUDGE_FRAMES,
+    NUDGE_LEFT,
+    NUDGE_RIGHT,
+    NUDGES,
+    RIGHT,
+    SAVES,
+    SHOT,
+    STUCK_FRAMES,
+    STUCK_FREED,
+    TILT,
+    TILT_PER_FRAME,
+    TILTS,
+    Rules,
+    borrow_rules,
+    hold_timer,
+    save_left,
+)
+from bounce_env.games.pinball_view import REFERENCE_SPEED, observe
 from bounce_env.games.rules import is_game
 from bounce_env.games.streams import LAUNCHES, uniform
 from bounce_env.games.table import (
-    BUMPER,
-    FLIPPER,
     IN_PLAY,
-    NOTHING,
     ROLLOVER,
-    SLINGSHOT,
     TARGET,
     Layout,
     layout_of,
     outline,
 )
 
-# Points, times the multiplier, which grows by 1 whenever the bank is hit, on the same ball.
-POINTS_BUMPER, POINTS_SLINGSHOT, POINTS_TARGET, POINTS_BANK = 50.0, 10.0, 250.0, 1000.0
-POINTS_ROLLOVER, POINTS_LANES = 100.0, 500.0
-HIGHEST_MULTIPLIER = 5
-FARMED = 20  # hits of bumpers and slingshots that count without a touch of a flipper in between
-
 REWARD_PER_POINT = 1e-3
 REWARD_PER_BALL = -0.5  # for every ball that is lost; the score knows nothing of it
 
 LAUNCH_SPEED = (1.45, 2.4)  # m/s
-LAUNCH_FRAMES = 3 * FPS  # after which a ball counts as in play wherever it is
-SAVE_FRAMES = 5 * FPS  # a ball that is lost so soon is given back, once
-HOLD_FRAMES = 4 * FPS  # in the flippers' zone, after which both are released until the ball leaves it
-STUCK_FRAMES = 10 * FPS  # without a hit that the rules know of: the ball is shot again
 
-# Buttons, as bits of the action's code.
-LEFT, RIGHT, NUDGE_LEFT, NUDGE_RIGHT = 1, 2, 4, 8
-NUDGE = (0.25, 0.15)  # m/s to the side and up
-NUDGE_FRAMES = FPS // 4  # after which the next one may follow
-NUDGE_COST = 1.0  # of the tilt meter, which shows 3 at a tilt
-TILT, TILT_PER_FRAME = 3.0, 0.5 / FPS
 
 # In one frame. A ball that all but stands on the end of a wall leaves it in more than a thousand tiny hops.
 MAX_EVENTS = 10_000
-
-REFERENCE_SPEED = 1.0  # m/s; the speed that is observed as 1
-
-# What is counted, in the order of `PinballGame.counters`.
-BY_BUMPERS, BY_SLINGSHOTS, BY_TARGETS, BY_ROLLOVERS = 0, 1, 2, 3
-BANKS, TOUCHES, FLIPS, SAVES, STUCK_FREED, HOLD_RELEASED, NUDGES, TILTS = 4, 5, 6, 7, 8, 9, 10, 11
-
-MEMORY = record(
-    lit="i8", passed="i8",  # bits: targets that are lit, rollovers that are not any more
-    multiplier="i8",
-    farmed="i8",  # hits of bumpers and slingshots since a flipper touched the ball
-    launches="i8",  # of the ball that is played
-    saved="i8",  # whether this ball has been given back
-    serving="i8",  # whether it is on its way out of the lane, or about to be
-    shot="i8", born="i8",  # frames in which it was shot and came into play
-    zone="i8",  # frame in which it came into the flippers' zone; -1 outside
-    scored="i8",  # frame of the last hit that the rules know of
-    pressed="i8",  # buttons in force
-    tilt="f8", tilted="i8",  # the tilt meter, and whether the flippers are dead for this ball
-    nudged="i8",  # frame of the last nudge
-)  # fmt: skip
-
-# `serving`: the ball is played, is to be shot, is in the lane.
-NO, DUE, SHOT = 0, 1, 2
-
-
-class Rules(NamedTuple):
-    """What the kernel needs to know of the game beside the scene."""
-
-    layout: Layout
-    fps: float
-    frame_skip: int
-    limit: float  # frames after which an episode is truncated; inf for never
-    repeat: float  # probability per frame that the last action is repeated
-    max_events: int
-    balls: int
-    nudge: int  # 1 where the table can be nudged
-
-
-@function
-def borrow_rules(rules: Rules) -> Rules:
-    """The same rules, borrowed; see `engine.jit.borrow`."""
-    layout = rules.layout
-    borrowed = Layout(
-        borrow(layout.tables),
-        borrow(layout.roles),
-        borrow(layout.lamps),
-        borrow(layout.sides),
-        borrow(layout.bumpers),
-        borrow(layout.cooldowns),
-    )
-    return Rules(
-        borrowed,
-        rules.fps,
-        rules.frame_skip,
-        rules.limit,
-        rules.repeat,
-        rules.max_events,
-        rules.balls,
-        rules.nudge,
-    )
-
-
-@function
-def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
-    """What the card of `bounce_env.env.PinballEnv` says, in its order."""
-    state, layout = worlds.state, rules.layout
-    memory, episode, world = worlds.memory[w], worlds.episodes[w], state.worlds[w]
-    scene = world.scene
-    table = layout.tables[scene]
-    x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
-    out[w, 0] = (x - table.x) * table.x_scale - 1.0
-    out[w, 1] = (y - table.y) * table.y_scale - 1.0
-    out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
-    i = observe_flippers(state, state.motions, worlds.tables.parts, layout, w, out, 4)
-    out[w, i] = (rules.balls - episode.ball) / rules.balls
-    out[w, i + 1] = save_left(memory, episode.frames) / SAVE_FRAMES
-    out[w, i + 2] = hold_timer(memory, episode.frames) / HOLD_FRAMES
-    out[w, i + 3] = memory.multiplier / HIGHEST_MULTIPLIER
-    out[w, i + 4] = min(memory.farmed, FARMED) / FARMED
-    out[w, i + 5] = (episode.frames - memory.scored) / STUCK_FRAMES
-    i += 6
-    for lamp in range(table.targets):
-        out[w, i + lamp] = (memory.lit >> lamp) & 1
-    i += table.targets
-    for lamp in range(table.rollovers):
-        out[w, i + lamp] = (memory.passed >> lamp) & 1
-    i += table.rollovers
-    for j in range(layout.bumpers.shape[1]):
-        out[w, i + j] = cooldown_left(state.cooling, world, w, layout.bumpers[scene, j]) * layout.cooldowns[scene, j]
-    i += layout.bumpers.shape[1]
-    if rules.nudge:
-        out[w, i] = 1.0 if memory.tilted else memory.tilt / TILT
-        out[w, i + 1] = max(NUDGE_FRAMES - (episode.frames - memory.nudged), 0) / NUDGE_FRAMES
-        i += 2
-    if rules.repeat > 0.0:
-        code = int(worlds.held[w, 0])
-        for bit in range(4 if rules.nudge else 2):
-            out[w, i + bit] = (code >> bit) & 1
-
-
-@function
-def observe_flippers(
-    state: State, motions: Table, parts: Table, layout: Layout, w: int, out: Array, i: int
-) -> int:  # fmt: skip
-    """How far each flipper is up, 0 to 1, from `out[w, i]` on; returns where the next number goes."""
-    if motions is None or parts is None:
-        return i
-    world = state.worlds[w]
-    for m in range(layout.sides.shape[1]):
-        if layout.sides[world.scene, m]:
-            # The quotient may exceed the ends of the range by its rounding.
-            stroke = offset_at(motions[w, m], world.time_hi, world.time_lo) / parts[world.scene, m].span
-            out[w, i] = min(max(stroke, 0.0), 1.0)
-            i += 1
-    return i
-
-
-@function
-def cooldown_left(cooling: Table, world: Any, w: int, element: int) -> float:
-    """Seconds until a bumper kicks again."""
-    if cooling is None or element < 0:
-        return 0.0
-    return max(since(cooling[w, element].hi, cooling[w, element].lo, world.time_hi, world.time_lo), 0.0)
-
-
-@function
-def save_left(memory: Any, frame: int) -> int:
-    """Frames for which a ball that is lost is given back."""
-    return 0 if memory.saved else max(SAVE_FRAMES - (frame - memory.born), 0)
-
-
-@function
-def hold_timer(memory: Any, frame: int) -> int:
-    """Frames that the ball has been in the flippers' zone, at most those after which they are released."""
-    return 0 if memory.zone < 0 else min(frame - memory.zone, HOLD_FRAMES)
 
 
 @function
@@ -332,69 +204,6 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
         if episode.end == RUNNING and episode.frames >= rules.limit:
             episode.end = TIME_LIMIT
     return reward
-
-
-@function
-def count_points(rules: Rules, worlds: Worlds, w: int) -> float:
-    """Points for what was hit in this frame, in the order of the elements; lamps and counters change with it."""
-    state, memory, episode = worlds.state, worlds.memory[w], worlds.episodes[w]
-    points = 0.0
-    if not state.worlds[w].dirty or memory.tilted:
-        return points
-    scene = state.worlds[w].scene
-    for element in range(state.hits.shape[1]):
-        role = rules.layout.roles[scene, element]
-        if state.hits[w, element] == 0 or role in (NOTHING, IN_PLAY):
-            continue
-        memory.scored = episode.frames
-        if role == FLIPPER:
-            memory.farmed = 0
-            worlds.counters[w, TOUCHES] += state.hits[w, element]
-        elif role in (BUMPER, SLINGSHOT):
-            points += score_kicks(worlds, w, role, state.hits[w, element])
-        else:
-            points += score_lamp(rules, worlds, w, scene, role, rules.layout.lamps[scene, element])
-    return points
-
-
-@function
-def score_kicks(worlds: Worlds, w: int, role: int, hits: int) -> float:
-    """Points for hits of a bumper or slingshot, as long as a flipper has touched the ball in between."""
-    memory = worlds.memory[w]
-    counted = min(hits, max(FARMED - memory.farmed, 0))
-    memory.farmed += hits
-    each = POINTS_BUMPER if role == BUMPER else POINTS_SLINGSHOT
-    points = each * memory.multiplier * counted
-    worlds.counters[w, BY_BUMPERS if role == BUMPER else BY_SLINGSHOTS] += points
-    return points
-
-
-@function
-def score_lamp(rules: Rules, worlds: Worlds, w: int, scene: int, role: int, lamp: int) -> float:
-    """Points for a target that is lit, or a rollover that was not passed yet; more for the last one of them."""
-    memory, table = worlds.memory[w], rules.layout.tables[scene]
-    bit = 1 << lamp
-    if role == TARGET:
-        if not memory.lit & bit:
-            return 0.0
-        memory.lit &= ~bit
-        points = POINTS_TARGET * memory.multiplier
-        if memory.lit == 0:
-            points += POINTS_BANK * memory.multiplier
-            memory.lit = (1 << table.targets) - 1
-            memory.multiplier = min(memory.multiplier + 1, HIGHEST_MULTIPLIER)
-            worlds.counters[w, BANKS] += 1
-        worlds.counters[w, BY_TARGETS] += points
-        return points
-    if memory.passed & bit:
-        return 0.0
-    memory.passed |= bit
-    points = POINTS_ROLLOVER * memory.multiplier
-    if memory.passed == (1 << table.rollovers) - 1:
-        points += POINTS_LANES * memory.multiplier
-        memory.passed = 0
-    worlds.counters[w, BY_ROLLOVERS] += points
-    return points
 
 
 @function

@@ -50,7 +50,7 @@ def refusal(command: Callable[..., int], options: type, words: list[str], monkey
         ('train --env-kwargs {"time_limit":null}', "time_limit = null"),
         ("train --resume runs/none", "runs/none: is not a run folder"),
         ("train --resume runs/none --seed 3 --steps 9", "leave out --steps, --seed"),
-        ("evaluate nobody", "'nobody': must be a run folder, or one of random, follow, predictor"),
+        ("evaluate nobody", "'nobody': must be a run folder, or, for Bounce/Paddle-v0, one of random, nothing, follow"),
         ("evaluate random --env-id CartPole-v1", "env_id = 'CartPole-v1': must be one of Bounce/"),
         ('evaluate random --env-kwargs {"time_limit":null}', "time_limit = null"),
         ('evaluate predictor --env-kwargs {"scene":"box"}', "box"),

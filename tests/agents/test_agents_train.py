@@ -88,7 +88,7 @@ def test_summary(run_folder: Path) -> None:
     seconds = summary.pop("train_seconds")
     assert summary == {"env_id": ENV_ID, "kwargs": {}, "versions": versions(), "seed": 5, "steps": 2048}
     assert seconds > 0.0
-    assert list(results) == ["random", "follow", "predictor", "trained", "trained_sampled"]
+    assert list(results) == ["random", "nothing", "follow", "predictor", "trained", "trained_sampled"]
     for result in results.values():
         assert set(result) == {"mean", "lo", "hi", "n"}
         assert result["lo"] <= result["mean"] <= result["hi"]

@@ -14,7 +14,7 @@ def dummy_display(monkeypatch):
 
 def test_a_game_has_an_id_and_a_short_name():
     assert game_id("paddle") == game_id("Bounce/Paddle-v0") == "Bounce/Paddle-v0"
-    with pytest.raises(Refused, match="game 'chess': must be one of paddle, Bounce/Paddle-v0"):
+    with pytest.raises(Refused, match="game 'chess': must be one of .*paddle, .*Bounce/Paddle-v0"):
         game_id("chess")
 
 
@@ -30,7 +30,7 @@ def test_a_play_of_some_frames_ends_with_its_score(tmp_path, monkeypatch, capsys
 @pytest.mark.parametrize(
     ("words", "error"),
     [
-        ("chess", "game 'chess': must be one of paddle"),
+        ("chess", "game 'chess': must be one of pinball, paddle"),
         ("paddle --scene nowhere", "scene 'nowhere': must be one of"),
         ("paddle --scene no/such.toml", "scene 'no/such.toml': there is no such file"),
         ("paddle --scene box", "a scene for the paddle game: paddles = 0: must be exactly 1"),

@@ -38,7 +38,7 @@ def test_list_names_every_scene_with_its_contents(capsys):
     assert main(["scenes", "list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(builtin_scenes())
-    assert lines[list(builtin_scenes()).index("paddle")].split("  ")[-1] == (
+    assert lines[list(builtin_scenes()).index("paddle")].split("  ")[-1].strip() == (
         "1.1 x 1.5 m: 3 walls, 4 bumpers, 1 paddle, 1 sensor"
     )
 

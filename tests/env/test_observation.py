@@ -2,12 +2,16 @@
 
 import math
 from collections import Counter
+from dataclasses import replace
 
 import gymnasium as gym
 import numpy as np
 import pytest
 from conftest import soak_count
 from rollouts import KINDS, PADDLE, assert_same, make_vec, name, scripted
+
+from bounce_env import Bumper, load_scene
+from bounce_env.games.paddle import TOUCHES
 
 WIDTH, BOTTOM, TOP = 1.0, -0.03, 1.4  # [m] the walls, the drain
 LEFT_STOP, RIGHT_STOP = 0.145, 0.855  # [m] of the paddle's centre
@@ -169,7 +173,7 @@ def test_a_hit_of_a_bumper_is_worth_one_point_and_nothing_else_is():
         _, reward, _, _, info = env.step([0.0])
         rewards.append(reward)
     assert rewards == [0.0] * 4
-    assert env.unwrapped._batch.episodes[0].touches == 1
+    assert env.unwrapped._batch.counters[0, TOUCHES] == 1
     assert info["score"] == 0.0
 
 
@@ -268,3 +272,18 @@ def test_the_time_already_played_is_no_hidden_state():
             compared, rewarded = compared + 1, rewarded + one[1]
     assert compared > 100
     assert rewarded > 3
+
+
+def test_a_moving_bumper_that_comes_first_is_not_the_paddle():
+    scene = load_scene("paddle")
+    drifting = Bumper((0.2, 0.9), 0.05, rail_end=(0.8, 0.9), speed=0.3, b=1.5)
+    elements = tuple(e for e in scene.elements if not isinstance(e, Bumper))
+    played = [
+        gym.make(PADDLE, scene=replace(scene, elements=e)) for e in ((drifting, *elements), (*elements, drifting))
+    ]
+    for env in played:
+        env.reset(seed=0)
+    for _ in range(60):
+        first, last = (env.step([0.5])[0] for env in played)
+        assert_same(first, last)
+    assert first[4] > 0.5

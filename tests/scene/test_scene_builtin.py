@@ -23,8 +23,8 @@ def elements(scene: Scene, spec: type) -> list:
     return [element for element in scene.elements if isinstance(element, spec)]
 
 
-def test_there_are_four():
-    assert builtin_scenes() == ("box", "guides", "paddle", "pegs")
+def test_there_are_five():
+    assert builtin_scenes() == ("box", "guides", "paddle", "pegs", "pinball")
 
 
 @pytest.mark.parametrize("spec", [Scene, Ball, *get_args(Element)], ids=lambda spec: spec.__name__)

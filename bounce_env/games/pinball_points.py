@@ -1,0 +1,75 @@
+"""What hits are worth in pinball: points, lamps, the multiplier."""
+
+from bounce_env.engine.jit import function
+from bounce_env.games.episode import Worlds
+from bounce_env.games.pinball_rules import BANKS, BY_BUMPERS, BY_ROLLOVERS, BY_SLINGSHOTS, BY_TARGETS, TOUCHES, Rules
+from bounce_env.games.table import BUMPER, FLIPPER, IN_PLAY, NOTHING, SLINGSHOT, TARGET
+
+# Points, times the multiplier, which grows by 1 whenever the bank is hit, on the same ball.
+POINTS_BUMPER, POINTS_SLINGSHOT, POINTS_TARGET, POINTS_BANK = 50.0, 10.0, 250.0, 1000.0
+POINTS_ROLLOVER, POINTS_LANES = 100.0, 500.0
+HIGHEST_MULTIPLIER = 5
+FARMED = 20  # hits of bumpers and slingshots that count without a touch of a flipper in between
+
+
+@function
+def count_points(rules: Rules, worlds: Worlds, w: int) -> float:
+    """Points for what was hit in this frame, in the order of the elements; lamps and counters change with it."""
+    state, memory, episode = worlds.state, worlds.memory[w], worlds.episodes[w]
+    points = 0.0
+    if not state.worlds[w].dirty or memory.tilted:
+        return points
+    scene = state.worlds[w].scene
+    for element in range(state.hits.shape[1]):
+        role = rules.layout.roles[scene, element]
+        if state.hits[w, element] == 0 or role in (NOTHING, IN_PLAY):
+            continue
+        memory.scored = episode.frames
+        if role == FLIPPER:
+            memory.farmed = 0
+            worlds.counters[w, TOUCHES] += state.hits[w, element]
+        elif role in (BUMPER, SLINGSHOT):
+            points += score_kicks(worlds, w, role, state.hits[w, element])
+        else:
+            points += score_lamp(rules, worlds, w, scene, role, rules.layout.lamps[scene, element])
+    return points
+
+
+@function
+def score_kicks(worlds: Worlds, w: int, role: int, hits: int) -> float:
+    """Points for hits of a bumper or slingshot, as long as a flipper has touched the ball in between."""
+    memory = worlds.memory[w]
+    counted = min(hits, max(FARMED - memory.farmed, 0))
+    memory.farmed += hits
+    each = POINTS_BUMPER if role == BUMPER else POINTS_SLINGSHOT
+    points = each * memory.multiplier * counted
+    worlds.counters[w, BY_BUMPERS if role == BUMPER else BY_SLINGSHOTS] += points
+    return points
+
+
+@function
+def score_lamp(rules: Rules, worlds: Worlds, w: int, scene: int, role: int, lamp: int) -> float:
+    """Points for a target that is lit, or a rollover that was not passed yet; more for the last one of them."""
+    memory, table = worlds.memory[w], rules.layout.tables[scene]
+    bit = 1 << lamp
+    if role == TARGET:
+        if not memory.lit & bit:
+            return 0.0
+        memory.lit &= ~bit
+        points = POINTS_TARGET * memory.multiplier
+        if memory.lit == 0:
+            points += POINTS_BANK * memory.multiplier
+            memory.lit = (1 << table.targets) - 1
+            memory.multiplier = min(memory.multiplier + 1, HIGHEST_MULTIPLIER)
+            worlds.counters[w, BANKS] += 1
+        worlds.counters[w, BY_TARGETS] += points
+        return points
+    if memory.passed & bit:
+        return 0.0
+    memory.passed |= bit
+    points = POINTS_ROLLOVER * memory.multiplier
+    if memory.passed == (1 << table.rollovers) - 1:
+        points += POINTS_LANES * memory.multiplier
+        memory.passed = 0
+    worlds.counters[w, BY_ROLLOVERS] += points
+    return points

@@ -1,0 +1,87 @@
+"""What a player of pinball sees: see the card of `bounce_env.env.PinballEnv`."""
+
+from typing import Any
+
+from bounce_env.engine.instant import since
+from bounce_env.engine.jit import Table, function
+from bounce_env.engine.layout import Array, State
+from bounce_env.engine.parts import offset_at
+from bounce_env.engine.view import ball_now
+from bounce_env.games.episode import Worlds
+from bounce_env.games.pinball_points import FARMED, HIGHEST_MULTIPLIER
+from bounce_env.games.pinball_rules import (
+    HOLD_FRAMES,
+    NUDGE_FRAMES,
+    SAVE_FRAMES,
+    STUCK_FRAMES,
+    TILT,
+    Rules,
+    hold_timer,
+    save_left,
+)
+from bounce_env.games.table import Layout
+
+REFERENCE_SPEED = 1.0  # m/s; the speed that is observed as 1
+
+
+@function
+def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
+    """What the card of `bounce_env.env.PinballEnv` says, in its order."""
+    state, layout = worlds.state, rules.layout
+    memory, episode, world = worlds.memory[w], worlds.episodes[w], state.worlds[w]
+    scene = world.scene
+    table = layout.tables[scene]
+    x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
+    out[w, 0] = (x - table.x) * table.x_scale - 1.0
+    out[w, 1] = (y - table.y) * table.y_scale - 1.0
+    out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
+    i = observe_flippers(state, state.motions, worlds.tables.parts, layout, w, out, 4)
+    out[w, i] = (rules.balls - episode.ball) / rules.balls
+    out[w, i + 1] = save_left(memory, episode.frames) / SAVE_FRAMES
+    out[w, i + 2] = hold_timer(memory, episode.frames) / HOLD_FRAMES
+    out[w, i + 3] = memory.multiplier / HIGHEST_MULTIPLIER
+    out[w, i + 4] = min(memory.farmed, FARMED) / FARMED
+    out[w, i + 5] = (episode.frames - memory.scored) / STUCK_FRAMES
+    i += 6
+    for lamp in range(table.targets):
+        out[w, i + lamp] = (memory.lit >> lamp) & 1
+    i += table.targets
+    for lamp in range(table.rollovers):
+        out[w, i + lamp] = (memory.passed >> lamp) & 1
+    i += table.rollovers
+    for j in range(layout.bumpers.shape[1]):
+        out[w, i + j] = cooldown_left(state.cooling, world, w, layout.bumpers[scene, j]) * layout.cooldowns[scene, j]
+    i += layout.bumpers.shape[1]
+    if rules.nudge:
+        out[w, i] = 1.0 if memory.tilted else memory.tilt / TILT
+        out[w, i + 1] = max(NUDGE_FRAMES - (episode.frames - memory.nudged), 0) / NUDGE_FRAMES
+        i += 2
+    if rules.repeat > 0.0:
+        code = int(worlds.held[w, 0])
+        for bit in range(4 if rules.nudge else 2):
+            out[w, i + bit] = (code >> bit) & 1
+
+
+@function
+def observe_flippers(
+    state: State, motions: Table, parts: Table, layout: Layout, w: int, out: Array, i: int
+) -> int:  # fmt: skip
+    """How far each flipper is up, 0 to 1, from `out[w, i]` on; returns where the next number goes."""
+    if motions is None or parts is None:
+        return i
+    world = state.worlds[w]
+    for m in range(layout.sides.shape[1]):
+        if layout.sides[world.scene, m]:
+            # The quotient may exceed the ends of the range by its rounding.
+            stroke = offset_at(motions[w, m], world.time_hi, world.time_lo) / parts[world.scene, m].span
+            out[w, i] = min(max(stroke, 0.0), 1.0)
+            i += 1
+    return i
+
+
+@function
+def cooldown_left(cooling: Table, world: Any, w: int, element: int) -> float:
+    """Seconds until a bumper kicks again."""
+    if cooling is None or element < 0:
+        return 0.0
+    return max(since(cooling[w, element].hi, cooling[w, element].lo, world.time_hi, world.time_lo), 0.0)

@@ -14,7 +14,7 @@ def dummy_display(monkeypatch):
 
 def test_a_game_has_an_id_and_a_short_name():
     assert game_id("paddle") == game_id("Bounce/Paddle-v0") == "Bounce/Paddle-v0"
-    with pytest.raises(Refused, match="game 'chess': must be one of .*paddle, .*Bounce/Paddle-v0"):
+    with pytest.raises(Refused, match=r"game 'chess': must be one of .*paddle, .*Bounce/Paddle-v0"):
         game_id("chess")
 
 

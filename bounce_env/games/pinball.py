@@ -113,6 +113,7 @@ def shoot(rules: Rules, worlds: Worlds, w: int) -> None:
         vx, vy = start[w, 2], start[w, 3]
     memory.launches += 1
     memory.shot, memory.born, memory.scored, memory.zone = episode.frames, episode.frames, episode.frames, -1
+    clear_hits(worlds.state, w)
     place(worlds.state, worlds.tables, w, 0, x, y, vx, vy)
 
 
@@ -175,6 +176,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     state, tables, episode, memory = worlds.state, worlds.tables, worlds.episodes[w], worlds.memory[w]
     reward = 0.0
     frames = rules.frame_skip
+    clear_hits(state, w)
     while (frames > 0 or memory.serving) and episode.end == RUNNING:
         buttons = 0
         if memory.serving == DUE:
@@ -184,7 +186,6 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
             hold_action(worlds, actions, w, rules.repeat)
             buttons = in_force(rules, worlds, w, int(worlds.held[w, 0]))
         press(rules, worlds, state.motions, tables.parts, w, buttons)
-        clear_hits(state, w)
         resume(state, w)
         episode.frames += 1
         # From the count of frames, not by adding up: the same instant whatever the frame skip.

@@ -11,25 +11,32 @@ POINTS_ROLLOVER, POINTS_LANES = 100.0, 500.0
 HIGHEST_MULTIPLIER = 5
 FARMED = 20  # hits of bumpers and slingshots that count without a touch of a flipper in between
 
+# What `state.hits` holds of an element whose hits have been counted: it stays lit for the rest of the step.
+COUNTED = 1 << 32
+
 
 @function
 def count_points(rules: Rules, worlds: Worlds, w: int) -> float:
     """Points for what was hit in this frame, in the order of the elements; lamps and counters change with it."""
     state, memory, episode = worlds.state, worlds.memory[w], worlds.episodes[w]
     points = 0.0
-    if not state.worlds[w].dirty or memory.tilted:
+    if not state.worlds[w].dirty:
+        return points
+    if memory.tilted:
+        memory.scored = episode.frames
         return points
     scene = state.worlds[w].scene
     for element in range(state.hits.shape[1]):
-        role = rules.layout.roles[scene, element]
-        if state.hits[w, element] == 0 or role in (NOTHING, IN_PLAY):
+        role, hits = rules.layout.roles[scene, element], state.hits[w, element] % COUNTED
+        if hits == 0 or role in (NOTHING, IN_PLAY):
             continue
+        state.hits[w, element] = COUNTED
         memory.scored = episode.frames
         if role == FLIPPER:
             memory.farmed = 0
-            worlds.counters[w, TOUCHES] += state.hits[w, element]
+            worlds.counters[w, TOUCHES] += hits
         elif role in (BUMPER, SLINGSHOT):
-            points += score_kicks(worlds, w, role, state.hits[w, element])
+            points += score_kicks(worlds, w, role, hits)
         else:
             points += score_lamp(rules, worlds, w, scene, role, rules.layout.lamps[scene, element])
     return points

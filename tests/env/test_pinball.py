@@ -9,7 +9,7 @@ import pytest
 from rollouts import assert_same
 
 from bounce_env import Scene, Sensor, Wall, load_scene
-from bounce_env.games import pinball
+from bounce_env.games import pinball, pinball_rules
 from bounce_env.games.table import layout_of, problems_of
 
 PINBALL = "Bounce/Pinball-v0"
@@ -323,3 +323,21 @@ def test_a_scene_may_have_several_flippers_of_a_button_and_other_numbers_of_lamp
 
 def vars_of(scene):
     return {name: getattr(scene, name) for name in ("gravity", "ball", "rest_speed", "max_speed", "drag")}
+
+
+def test_what_is_hit_counts_once_and_is_lit_until_the_step_ends():
+    """A bumper is hit in the first of three frames: its points are given once, and the picture shows it."""
+    x, y = TABLE.elements[index("bumper_1")].center
+    env = begun((x, y + 0.05), (0.0, -1.0), frame_skip=3, render_mode="rgb_array")
+    dark = env.render()
+    _, reward, *_ = env.step(NONE)
+    assert reward == 0.05
+    lit = env.render()
+    env.step(NONE)
+    later = env.render()
+    assert env.unwrapped._batch.counters[0, pinball_rules.BY_BUMPERS] == 50.0
+    (left, top), (right, bottom) = env.unwrapped._renderer.projection.to_pixels([(x - 0.03, y), (x + 0.03, y - 0.03)])
+    corner = np.s_[round(top) : round(bottom), round(left) : round(right)]
+    brightness = [picture[corner].astype(float).mean() for picture in (dark, lit, later)]
+    assert brightness[1] > 1.1 * brightness[0]
+    assert brightness[2] < 1.05 * brightness[0]

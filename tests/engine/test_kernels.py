@@ -11,16 +11,16 @@ import numpy as np
 
 import bounce_env
 from bounce_env import Ball, Bumper, Scene, Wall, World
-from bounce_env.engine import world as world_module
+from bounce_env.engine import entry
 
 PACKAGE = Path(bounce_env.__file__).parent
 RUN = """
 from bounce_env import Scene, Wall, World
-from bounce_env.engine import world as m
+from bounce_env.engine import entry as m
 w = World(Scene(gravity=(0.0, 0.0), elements=(Wall((0.0, 0.0), (1.0, 0.0)),)))
 w.reset(position=(0.5, 1.0), velocity=(0.0, -1.0))
 w.advance(1.5)
-print(sum(m._advance.stats.cache_hits.values()), sum(m._advance.stats.cache_misses.values()))
+print(sum(m.advance_to.stats.cache_hits.values()), sum(m.advance_to.stats.cache_misses.values()))
 print(w.velocity[0, 1])
 """
 
@@ -63,7 +63,7 @@ def test_scenes_of_one_feature_set_share_a_kernel() -> None:
         world.reset(position=(0.5, 1.0), velocity=(0.0, 0.0))
         world.advance(0.5)
         assert np.isfinite(world.position).all()
-        return len(world_module._advance.signatures)  # type: ignore[attr-defined]
+        return len(entry.advance_to.signatures)  # type: ignore[attr-defined]
 
     first = signatures_after([*walls[:1], *bumpers[:1]])
     assert signatures_after([*walls, *bumpers]) == first

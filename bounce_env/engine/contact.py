@@ -17,6 +17,7 @@ from bounce_env.engine.layout import (
     FLYING,
     HELD,
     JAMMED,
+    NEXT_PART,
     RESOLVE,
     RIDING,
     SETTLES,
@@ -99,8 +100,10 @@ def _bounce_and_go(
         return -1.0
     _let_go(ball)
     if tables.gravity is not None:
-        # Told at once of a hit of something that it does not close on, a riding ball would be so for ever: it hops off.
-        again = contact == RIDING and at_once and state.worlds[w].bounces == bounces
+        # Told at once of a hit of something that it does not close on, a ball that rides on a part, or slides into one,
+        # would be so for ever: it hops off.
+        slides_in = contact >= 0 and ball.next_kind == NEXT_PART
+        again = (contact == RIDING or slides_in) and at_once and state.worlds[w].bounces == bounces
         i = _change_contact(state, tables, w, k, contact, support, again, vx0, vy0, ledger)
         corner = corner if i < 0 else -1
     if corner >= 0:

@@ -281,7 +281,7 @@ class PinballEnv(BounceEnv):
     | time that the ball has been at the flippers, over 4 s; 1: they are released until it leaves | [0, 1] |
     | multiplier over 5 | [0, 1] |
     | hits of bumpers and slingshots since a flipper's touch, over 20 | [0, 1] |
-    | time without any hit that counts, over 10 s | [0, 1] |
+    | time without points or a touch of a flipper, over 10 s | [0, 1] |
     | each target (3): 1 if it is lit | {0, 1} |
     | each lane (3): 1 if it is lit | {0, 1} |
     | each bumper (3): what is left of its cooldown of 0.1 s | [0, 1] |
@@ -297,7 +297,8 @@ class PinballEnv(BounceEnv):
     End: terminated when the last ball drains; truncated after `time_limit` seconds of play (or, never seen in play,
     when more than 10 000 events fall into one frame: `end_reason` "budget"). A ball that drains within 5 s is given
     back, once. When one has been in the flippers' zone for 4 s, both are released until it has left it
-    (`hold_released`). One that has hit nothing that counts for 10 s is stuck, and is shot again (`stuck_freed`).
+    (`hold_released`). One that for 10 s has neither met a flipper nor earned points is stuck, and is shot again
+    (`stuck_freed`).
 
     Info: each step `score` and `ball` (0 to `balls` - 1). At an episode's end also `end_reason`, `points_bumpers`,
     `points_slingshots`, `points_targets`, `points_rollovers`, `banks`, `touches` (hits of flippers), `flips`, `saves`,

@@ -31,7 +31,7 @@ def count_points(rules: Rules, worlds: Worlds, w: int) -> float:
         if hits == 0 or role in (NOTHING, IN_PLAY):
             continue
         state.hits[w, element] = COUNTED
-        memory.scored = episode.frames
+        before = points
         if role == FLIPPER:
             memory.farmed = 0
             worlds.counters[w, TOUCHES] += hits
@@ -39,6 +39,9 @@ def count_points(rules: Rules, worlds: Worlds, w: int) -> float:
             points += score_kicks(worlds, w, role, hits)
         else:
             points += score_lamp(rules, worlds, w, scene, role, rules.layout.lamps[scene, element])
+        # A ball that goes to and fro between two bumpers for nothing is as stuck as one that lies still.
+        if role == FLIPPER or points > before:
+            memory.scored = episode.frames
     return points
 
 

@@ -10,7 +10,7 @@ from bounce_env.games.table import Layout
 LAUNCH_FRAMES = 3 * FPS  # after which a ball counts as in play wherever it is
 SAVE_FRAMES = 5 * FPS  # a ball that is lost so soon is given back, once
 HOLD_FRAMES = 4 * FPS  # in the flippers' zone, after which both are released until the ball leaves it
-STUCK_FRAMES = 10 * FPS  # without a hit that the rules know of: the ball is shot again
+STUCK_FRAMES = 10 * FPS  # without a hit of a flipper, or one that gives points: the ball is shot again
 
 # Buttons, as bits of the action's code.
 LEFT, RIGHT, NUDGE_LEFT, NUDGE_RIGHT = 1, 2, 4, 8
@@ -32,7 +32,7 @@ MEMORY = record(
     serving="i8",  # whether it is on its way out of the lane, or about to be
     shot="i8", born="i8",  # frames in which it was shot and came into play
     zone="i8",  # frame in which it came into the flippers' zone; -1 outside
-    scored="i8",  # frame of the last hit that the rules know of
+    scored="i8",  # frame of the last hit that gave points, or of a flipper
     pressed="i8",  # buttons in force
     tilt="f8", tilted="i8",  # the tilt meter, and whether the flippers are dead for this ball
     nudged="i8",  # frame of the last nudge

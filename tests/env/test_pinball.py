@@ -165,8 +165,10 @@ def test_bumpers_pay_for_twenty_hits_only_until_a_flipper_touches_the_ball():
     for farmed in (18, 19, 20, 21):
         env.reset(seed=0, options={"position": (x, y + 0.05), "velocity": (0.0, -1.0)})
         batch.memory["farmed"] = farmed
-        earned.append(env.step(NONE)[1])
-    assert earned == [0.05, 0.05, 0.0, 0.0]
+        batch.memory["scored"] = -60
+        observation, reward, *_ = env.step(NONE)
+        earned.append((reward, observation[IDLE] > 0.1))
+    assert earned == [(0.05, False), (0.05, False), (0.0, True), (0.0, True)]  # for nothing it is as good as stuck
     tip = (TABLE.elements[index("flipper_left")].pivot[0] + 0.045, 0.14)
     env.reset(seed=0, options={"position": tip, "velocity": (0.0, -1.0)})
     batch.memory["farmed"] = 25

@@ -18,7 +18,7 @@ import pytest
 
 GOLDEN = {
     "Bounce/Paddle-v0": "8262c51e9dfa2cae83b407469567efc32cef76a80a42e55682dc7957aaa47a1e",
-    "Bounce/Pinball-v0": "62d1e25e024afc4b2f9bc5653933794b8caa920f30d3bd712d7e3921e353c839",
+    "Bounce/Pinball-v0": "99e377fbe90eb02940dd88caac1017fa650a6ce0338741c78b834216c7b9d61a",
 }
 TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0}
 

@@ -28,23 +28,16 @@ def random(task: Task) -> Player:
     return act
 
 
-def nothing(task: Task) -> Player:
-    """No button, no speed."""
-    space = task.action_space
-    still = 1 if task.resolved_kwargs["action"] == "discrete" and task.env_id == "Bounce/Paddle-v0" else 0
-    return lambda observations: np.full((len(observations), *space.shape), still, space.dtype)
-
-
 BASELINES: dict[str, dict[str, Callable[[Task], Player | LookAhead]]] = {
     "Bounce/Paddle-v0": {
         "random": random,
-        "nothing": nothing,
+        "nothing": paddle_players.nothing,
         "follow": paddle_players.follow,
         "predictor": paddle_players.predictor,
     },
     "Bounce/Pinball-v0": {
         "random": random,
-        "nothing": nothing,
+        "nothing": pinball_players.nothing,
         "hold": pinball_players.hold,
         "flail": pinball_players.flail,
         "timed": pinball_players.timed,

@@ -160,6 +160,11 @@ class Mover:
         return np.clip(steps, -1.0, 1.0).astype(np.float32)[:, None]
 
 
+def nothing(task: Task) -> Player:
+    """Stay where the paddle is."""
+    return Mover(task, lambda table, observations: table.paddle(observations))
+
+
 def follow(task: Task) -> Player:
     """Stay under the ball."""
     return Mover(task, lambda table, observations: table.ball(observations)[0])

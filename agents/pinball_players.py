@@ -30,6 +30,11 @@ def as_actions(task: Task, codes: npt.NDArray[np.int64]) -> npt.NDArray[Any]:
     return (codes[:, None] >> np.arange(buttons) & 1).astype(np.int8)
 
 
+def nothing(task: Task) -> Player:
+    """No button, ever."""
+    return lambda observations: as_actions(task, np.zeros(len(observations), np.int64))
+
+
 def hold(task: Task) -> Player:
     """Both flippers up, for ever."""
     return lambda observations: as_actions(task, np.full(len(observations), LEFT + RIGHT))

@@ -2,7 +2,7 @@
 
 import hashlib
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -88,11 +88,11 @@ class Batch:
 
     def clone(self, mask: Mask) -> States:
         """The states of the worlds of `mask`, with their streams of episodes and what the last step returned."""
-        return clone_rows(self._digest(), self._rows(), mask)
+        return clone_rows(self._digest, self._rows(), mask)
 
     def restore(self, states: States, mask: Mask) -> None:
         """Let the worlds of `mask` go on from `states`; raises ValueError where they are not of an equal batch."""
-        restore_rows(self._digest(), self._rows(), mask, states)
+        restore_rows(self._digest, self._rows(), mask, states)
 
     def _rows(self) -> tuple[Array, ...]:
         """All arrays with a row for each world that steps read."""
@@ -100,7 +100,9 @@ class Batch:
         arrays = (*self.state, self.episodes, self.memory, self.held, self.counters, *results)
         return tuple(array for array in arrays if array is not None)
 
+    @cached_property
     def _digest(self) -> str:
+        """Of all that a state belongs to: who looks ahead clones and restores before every step."""
         game = self.game
         text = repr((type(game).__name__, game.scenes, game.options, game.rules.limit))
         return hashlib.sha256(text.encode()).hexdigest()

@@ -1,5 +1,6 @@
 """What every game keeps for each world beside the engine's state, and what it says of an episode."""
 
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numba
@@ -82,20 +83,6 @@ class Handle(structref.StructRefProxy):  # type: ignore[misc]
 structref.define_proxy(Handle, _HandleType, list(_FIELDS))
 
 
-class _Interpreted(NamedTuple):
-    """What a `Handle` is where the compiler is switched off."""
-
-    rules: Any
-    state: State
-    tables: Tables
-    episodes: Array
-    memory: Any
-    held: Array
-    counters: Array
-    start: Array
-    results: Results
-
-
 @kernel
 def _bind_compiled(rules: Any, worlds: Worlds) -> Any:
     return Handle(
@@ -113,7 +100,9 @@ def _bind_compiled(rules: Any, worlds: Worlds) -> Any:
 
 def bind(rules: Any, worlds: Worlds) -> Any:
     """A handle to all that a game's kernels work on; it keeps the arrays alive."""
-    return _Interpreted(rules, *worlds) if numba.config.DISABLE_JIT else _bind_compiled(rules, worlds)
+    return (
+        SimpleNamespace(rules=rules, **worlds._asdict()) if numba.config.DISABLE_JIT else _bind_compiled(rules, worlds)
+    )
 
 
 def new_results(worlds: int, size: int, counters: int) -> Results:

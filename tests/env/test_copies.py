@@ -6,7 +6,7 @@ import pickle
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import KINDS, PADDLE, assert_same, make_vec, name, scripted
+from rollouts import KINDS, PADDLE, PINBALL, assert_same, make_vec, name, scripted
 
 from bounce_env.sb3 import BounceVecEnv
 
@@ -107,3 +107,43 @@ def test_an_open_window_is_not_copied(copied, monkeypatch):
     twin = copied(env)
     assert_same(twin.step([0.5]), env.step([0.5]))
     env.close(), twin.close()
+
+
+@pytest.mark.parametrize("env_id", [PADDLE, PINBALL])
+def test_a_restored_state_goes_on_to_the_same_bits(env_id):
+    """In the worlds that it came from, and, row by row, in those of another batch."""
+    envs, other = (make_vec(4, "SAME_STEP", env_id, time_limit=9.0) for _ in range(2))
+    envs.reset(seed=4), other.reset(seed=9)
+    script = scripted(envs.action_space, 400)
+    for actions in script[:40]:
+        envs.step(actions)
+    states = envs.unwrapped.clone_state()
+    steps = [envs.step(actions) for actions in script[40:]]
+    assert any(step[2].any() or step[3].any() for step in steps)
+    envs.unwrapped.restore_state(states)
+    assert_same([envs.step(actions) for actions in script[40:]], steps)
+    other.unwrapped.restore_state(states[np.array([2, 2, 0])], np.array([True, False, True, True]))
+    for actions, step in zip(script[40:], steps, strict=True):
+        observations, rewards, *_ = other.step(actions[[2, 1, 2, 0]])
+        assert_same(observations[[0, 3]], step[0][[2, 0]])
+        assert_same(rewards[[0, 3]], step[1][[2, 0]])
+
+
+def test_a_state_that_does_not_fit_is_refused_and_changes_nothing():
+    envs, untouched = make_vec(3), make_vec(3)
+    with pytest.raises(gym.error.ResetNeeded, match="clone_state"):
+        envs.unwrapped.clone_state()
+    envs.reset(seed=0), untouched.reset(seed=0)
+    longer = make_vec(3, time_limit=7.0)
+    longer.reset(seed=1)
+    states = envs.unwrapped.clone_state()
+    for state, mask, words in (
+        (longer.unwrapped.clone_state(), None, "another game, scene or options"),
+        (states[:2], None, "of 2 worlds: must be of 3"),
+        (states, np.array([True, False, False]), "of 3 worlds: must be of 1"),
+        (b"state", None, "must be what clone_state"),
+        (states, np.zeros(3, bool), "at least one world"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            envs.unwrapped.restore_state(state, mask)
+    assert_same(envs.step(np.ones(3)), untouched.step(np.ones(3)))

@@ -3,11 +3,10 @@
 import math
 from collections.abc import Callable, Hashable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import yaml
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
-from stable_baselines3.common.utils import LinearSchedule
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from agents.command import Refused
 from bounce_env.scene.fields import Allowed
@@ -87,57 +86,6 @@ class Strict(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 
-class PolicyKwargs(Strict):
-    """The network; what SB3's MlpPolicy takes and YAML can say. `net_arch`: units of the hidden layers."""
-
-    net_arch: Layers = [64, 64]
-    log_std_init: Number = 0.0
-    ortho_init: Flag = True
-
-
-class Hyperparameters(Strict):
-    """An entry of a config: RL Zoo's keys for PPO with SB3's defaults. `n_timesteps` must be given."""
-
-    n_timesteps: Count
-    n_envs: Count = 1
-    env_kwargs: dict[str, Any] = {}
-    policy: Literal["MlpPolicy"] = "MlpPolicy"
-    policy_kwargs: PolicyKwargs = PolicyKwargs()
-    n_steps: Count = 2048
-    batch_size: Count = 64
-    n_epochs: Count = 10
-    learning_rate: Schedule = 3e-4
-    clip_range: Schedule = 0.2
-    clip_range_vf: Schedule | None = None
-    gamma: Share = 0.99
-    gae_lambda: Share = 0.95
-    normalize_advantage: Flag = True
-    ent_coef: NotNegative = 0.0
-    vf_coef: NotNegative = 0.5
-    max_grad_norm: Positive = 0.5
-    use_sde: Flag = False
-    target_kl: Positive | None = None
-
-    @model_validator(mode="after")
-    def _batches_are_whole(self) -> "Hyperparameters":
-        if (self.n_envs * self.n_steps) % self.batch_size:
-            raise ValueError(f"batch_size must divide n_envs * n_steps = {self.n_envs * self.n_steps}")
-        return self
-
-    def for_ppo(self) -> dict[str, Any]:
-        """Keyword arguments of SB3's PPO, beside the environment."""
-        kwargs = self.model_dump(exclude={"n_timesteps", "n_envs", "env_kwargs"})
-        schedules = {key: kwargs[key] for key in ("learning_rate", "clip_range", "clip_range_vf")}
-        return kwargs | {key: as_schedule(value) for key, value in schedules.items()}
-
-
-def as_schedule(value: float | str | None) -> float | LinearSchedule | None:
-    """What SB3 takes for a config's number or "lin_NUMBER"."""
-    if isinstance(value, str):
-        return LinearSchedule(float(value.removeprefix("lin_")), 0.0, 1.0)
-    return value
-
-
 class _Loader(yaml.SafeLoader):
     """Plain YAML, in which a key given twice is an error."""
 
@@ -162,8 +110,8 @@ def read_yaml(path: Path) -> dict[str, Any]:
     return data
 
 
-def load_config(path: Path, env_id: str, overrides: Mapping[str, Any]) -> Hyperparameters:
-    """The entry of `env_id` in a config file; `overrides` take the place of what it says.
+def load_config(path: Path, env_id: str, overrides: Mapping[str, Any], model: type[Model]) -> Model:
+    """The entry of `env_id` in a config file, as a `model`; `overrides` take the place of what it says.
 
     Raises Refused: one line for each thing that is wrong, with file, id, key, value and what is allowed.
     """
@@ -171,7 +119,7 @@ def load_config(path: Path, env_id: str, overrides: Mapping[str, Any]) -> Hyperp
     if env_id not in data:
         raise Refused(f"{path}: has no entry {env_id!r}; it has {', '.join(map(str, data)) or 'none'}")
     entry = data[env_id]
-    return checked(Hyperparameters, {**entry, **overrides} if isinstance(entry, dict) else entry, f"{path}: {env_id}")
+    return checked(model, {**entry, **overrides} if isinstance(entry, dict) else entry, f"{path}: {env_id}")
 
 
 def checked(model: type[Model], data: Any, where: str) -> Model:

@@ -1,4 +1,4 @@
-"""PPO on a run: the model, what is done between its updates, and how it is stopped without a loss."""
+"""A run's training: the model, what is done between its updates, and how it is stopped without a loss."""
 
 import signal
 import time
@@ -7,15 +7,18 @@ from contextlib import contextmanager
 from types import FrameType
 
 import numpy as np
-from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
 from stable_baselines3.common.utils import set_random_seed
 
+from agents.algorithms import Model
 from agents.command import say
 from agents.curve import Curve, Point
 from agents.runs import Run
 from agents.task import training_seed
+
+MOST_POINTS = 1000
+"""Of a learning curve."""
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
@@ -76,8 +79,9 @@ class Bookkeeping(BaseCallback):
 
     def _on_rollout_end(self) -> None:
         self.steps = self.model.num_timesteps  # the update follows at once, and nothing is saved before it is done
-        # In a rollout without an episode's end the curve has a gap.
-        if self.scores:
+        # In a rollout without an episode's end the curve has a gap; DQN and SAC have rollouts of a few steps.
+        done = self.curve.points[-1].steps if self.curve.points else 0
+        if self.scores and self.steps - done >= self.run.hyperparameters.n_timesteps / MOST_POINTS:
             means = float(np.mean(self.scores)), float(np.mean(self.lengths))
             self.curve.points.append(Point(self.steps, self.seconds, len(self.scores), *means))
             self.scores.clear()
@@ -96,23 +100,27 @@ class Bookkeeping(BaseCallback):
         self.saved = time.monotonic()
 
 
-def new_model(run: Run) -> PPO:
+def new_model(run: Run) -> Model:
     """An untrained model; what it draws follows from the run's seed."""
     set_random_seed(run.seed)
     env = run.task.for_sb3(run.hyperparameters.n_envs, training_seed(run.seed, 0))
     # Without a seed of its own: SB3 would seed the environments anew with it.
-    return PPO(env=env, device="cpu", **run.hyperparameters.for_ppo())
+    parameters = run.hyperparameters
+    return parameters.algorithm(env=env, device="cpu", **parameters.for_sb3())
 
 
-def resumed_model(run: Run) -> PPO:
-    """The newest checkpoint, with its optimizer's state, its count of steps, and episodes that it has not met."""
+def resumed_model(run: Run) -> Model:
+    """The newest checkpoint, with its optimizer's state, its count of steps, and episodes that it has not met.
+
+    DQN and SAC begin with an empty replay buffer again.
+    """
     steps = run.load_model().num_timesteps
     set_random_seed(int(np.random.SeedSequence((run.seed, steps)).generate_state(1)[0]))
     env = run.task.for_sb3(run.hyperparameters.n_envs, training_seed(run.seed, steps))
     return run.load_model(env)
 
 
-def learn(run: Run, model: PPO, curve: Curve, stop: Stop, *, checkpoint_seconds: float, progress_bar: bool) -> float:
+def learn(run: Run, model: Model, curve: Curve, stop: Stop, *, checkpoint_seconds: float, progress_bar: bool) -> float:
     """Train up to the run's number of steps, or until asked to stop, and write the last checkpoint.
 
     Returns the seconds that the training has taken. `model` and `curve` are changed in place.

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from stable_baselines3 import PPO
 
+from agents.algorithms import Model
 from agents.baselines import BASELINES
 from agents.command import Refused
 from agents.look_ahead import LookAhead
@@ -16,7 +16,7 @@ from agents.task import Player, Task
 DEFAULT_ENV_ID = "Bounce/Paddle-v0"
 
 
-def trained(model: PPO, *, sampled: bool = False) -> Player:
+def trained(model: Model, *, sampled: bool = False) -> Player:
     """A model that plays its best action (argmax), or samples one as it did in training.
 
     What it samples is the same after each call of this function (which seeds PyTorch's one generator).

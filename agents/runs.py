@@ -18,11 +18,11 @@ from importlib.metadata import version
 from pathlib import Path
 
 import yaml
-from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import VecEnv
 
+from agents.algorithms import ALGORITHMS, Algorithm, Hyperparameters, Model
 from agents.command import Refused
-from agents.config import Hyperparameters, Seed, Strict, checked, read_yaml
+from agents.config import Seed, Strict, checked, read_yaml
 from agents.files import replacing, write_text
 from agents.task import Task
 
@@ -43,6 +43,7 @@ class Origin(Strict):
     """The part of a run's config that is not hyperparameters."""
 
     env_id: str
+    algo: Algorithm = "ppo"
     seed: Seed
     versions: dict[str, str]
 
@@ -53,6 +54,7 @@ class Run:
 
     folder: Path
     task: Task
+    algo: str
     hyperparameters: Hyperparameters
     seed: int
     versions: dict[str, str]
@@ -62,18 +64,18 @@ class Run:
         """The newest checkpoint."""
         return self.folder / "model.zip"
 
-    def save_model(self, model: PPO) -> None:
+    def save_model(self, model: Model) -> None:
         """Replace the checkpoint; it holds the hyperparameters, too (SB3 saves whatever a model has)."""
         model.hyperparameters = self.hyperparameters.model_dump()
         with replacing(self.model) as unfinished:
             model.save(unfinished)
 
-    def load_model(self, env: VecEnv | None = None) -> PPO:
+    def load_model(self, env: VecEnv | None = None) -> Model:
         """The newest checkpoint. Raises Refused if there is none, if it is damaged, or does not fit the config."""
         if not self.model.exists():
             raise Refused(f"{self.folder}: has no model.zip: it was stopped before the first checkpoint; start anew")
         try:
-            model = PPO.load(self.model, env=env, device="cpu")
+            model = self.hyperparameters.algorithm.load(self.model, env=env, device="cpu")
         except Exception as error:  # whatever SB3, torch, pickle and zip may raise on a damaged file
             raise Refused(f"{self.model}: cannot be loaded: {error}") from error
         trained = getattr(model, "hyperparameters", {})
@@ -86,7 +88,7 @@ class Run:
         return model
 
 
-def new_run(output: Path, task: Task, hyperparameters: Hyperparameters, seed: int) -> Run:
+def new_run(output: Path, task: Task, algo: str, hyperparameters: Hyperparameters, seed: int) -> Run:
     """Make a folder <id>-<time> in `output`, with the config."""
     name = f"{task.env_id.replace('/', '-')}-{time.strftime('%Y%m%d-%H%M%S')}"
     folder, again = output / name, 1
@@ -94,10 +96,10 @@ def new_run(output: Path, task: Task, hyperparameters: Hyperparameters, seed: in
         again += 1
         folder = output / f"{name}-{again}"
     folder.mkdir(parents=True)
-    run = Run(folder, task, hyperparameters, seed, versions())
+    run = Run(folder, task, algo, hyperparameters, seed, versions())
     content = {
         task.env_id: hyperparameters.model_dump(),
-        "run": {"env_id": task.env_id, "seed": seed, "versions": run.versions},
+        "run": {"env_id": task.env_id, "algo": algo, "seed": seed, "versions": run.versions},
     }
     write_text(folder / "config.yml", HEADER + yaml.safe_dump(content, sort_keys=False))
     return run
@@ -112,5 +114,6 @@ def open_run(folder: Path) -> Run:
     origin = checked(Origin, data.pop("run", None), f"{path}: run")
     if set(data) != {origin.env_id}:
         raise Refused(f"{path}: must have the entries 'run' and {origin.env_id!r}; it has {', '.join(map(str, data))}")
-    hyperparameters = checked(Hyperparameters, data[origin.env_id], f"{path}: {origin.env_id}")
-    return Run(folder, Task(origin.env_id, hyperparameters.env_kwargs), hyperparameters, origin.seed, origin.versions)
+    hyperparameters = checked(ALGORITHMS[origin.algo], data[origin.env_id], f"{path}: {origin.env_id}")
+    task = Task(origin.env_id, hyperparameters.env_kwargs)
+    return Run(folder, task, origin.algo, hyperparameters, origin.seed, origin.versions)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import torch
 
+from agents.algorithms import ALGORITHMS, Algorithm
 from agents.baselines import quick_baselines
 from agents.command import JsonObject, Refused, check_range, run, say
 from agents.config import LARGEST_SEED, load_config
@@ -27,8 +28,11 @@ class TrainOptions:
 
     env_id: str = DEFAULT_ENV_ID
     """What to train on."""
-    config: Path = Path("configs/ppo.yml")
-    """Hyperparameters: a YAML file in the RL Zoo's format, with an entry for the environment's id."""
+    algo: Algorithm = "ppo"
+    """PPO; DQN, for a game with discrete actions; or SAC, for one with continuous ones."""
+    config: Path | None = None
+    """Hyperparameters: a YAML file in the RL Zoo's format, with an entry for the environment's id. Default:
+    configs/<algo>.yml."""
     steps: int | None = None
     """Environment steps to train for. Default: n_timesteps of the config."""
     seed: int = 0
@@ -49,11 +53,11 @@ class TrainOptions:
     """Show a progress bar while training."""
 
 
-OF_A_NEW_RUN = ("env_id", "config", "steps", "seed", "env_kwargs", "output")
+OF_A_NEW_RUN = ("env_id", "algo", "config", "steps", "seed", "env_kwargs", "output")
 
 
 def train(options: TrainOptions) -> int:
-    """Train PPO with Stable-Baselines3, compare it with the baselines on held-out episodes, and film it.
+    """Train an agent with Stable-Baselines3, compare it with the baselines on held-out episodes, and film it.
 
     Writes a run folder: model.zip, config.yml, tensorboard/, learning_curve.png and .csv, rollout.mp4 and .gif,
     summary.json. Ctrl-C or SIGTERM stops in order, and even after SIGKILL the newest checkpoint is whole:
@@ -70,7 +74,7 @@ def train(options: TrainOptions) -> int:
     model = resumed_model(run) if options.resume else new_model(run)
     curve, stop = Curve.read(run.folder), Stop()
     curve.cut(model.num_timesteps)
-    say(f"training PPO: {model.num_timesteps:,} of {run.hyperparameters.n_timesteps:,} steps done")
+    say(f"training {run.algo.upper()}: {model.num_timesteps:,} of {run.hyperparameters.n_timesteps:,} steps done")
     seconds = learn(
         run, model, curve, stop, checkpoint_seconds=options.checkpoint_seconds, progress_bar=options.progress_bar
     )
@@ -83,7 +87,7 @@ def train(options: TrainOptions) -> int:
     players |= {"trained": trained(model), "trained_sampled": trained(model, sampled=True)}
     say(f"playing {options.episodes} held-out episodes with each player ...")
     played = {name: play(run.task, player, options.episodes) for name, player in players.items()}
-    draw(curve, played, f"PPO on {run.task.env_id}, seed {run.seed}", run.folder)
+    draw(curve, played, f"{run.algo.upper()} on {run.task.env_id}, seed {run.seed}", run.folder)
     say("filming an episode ...")
     record_episode(run.task, players["trained"], run.folder)
     write_summary(run, model.num_timesteps, seconds, played)
@@ -97,10 +101,11 @@ def begun(options: TrainOptions) -> Run:
     check_range("seed", options.seed, 0, LARGEST_SEED)
     overrides = {"n_timesteps": options.steps, "env_kwargs": options.env_kwargs}
     given = {key: value for key, value in overrides.items() if value is not None}
-    hyperparameters = load_config(options.config, options.env_id, given)
+    config = options.config or Path(f"configs/{options.algo}.yml")
+    hyperparameters = load_config(config, options.env_id, given, ALGORITHMS[options.algo])
     task = Task(options.env_id, hyperparameters.env_kwargs)
     check_ends(task)
-    return new_run(options.output, task, hyperparameters, options.seed)
+    return new_run(options.output, task, options.algo, hyperparameters, options.seed)
 
 
 def resumed(options: TrainOptions) -> Run:

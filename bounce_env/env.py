@@ -1,5 +1,6 @@
 """The Gymnasium environments: each a batch of one world, with its card as docstring."""
 
+from collections.abc import Mapping
 from os import PathLike
 from typing import Any, Literal
 
@@ -44,6 +45,19 @@ def action_space(game: Game) -> spaces.Space[Any]:
 def world_seed(generator: np.random.Generator) -> np.uint64:
     """The seed of a world's stream of episodes, drawn from a Gymnasium generator."""
     return np.uint64(generator.integers(2**64, dtype=np.uint64))
+
+
+def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, dict[str, Any]]:
+    """The option "snapshot" of a reset, None where there is none, and the other options.
+
+    Raises ValueError where it comes with a seed or with others: it says all that they could say.
+    """
+    others = dict(options or {})
+    snapshot = others.pop("snapshot", None)
+    if snapshot is not None and (others or seed is not None):
+        besides = ", ".join([*(f"options[{name!r}]" for name in others), *(["seed"] if seed is not None else [])])
+        raise ValueError(f"options['snapshot']: must come without {besides}")
+    return snapshot, others
 
 
 def picture_of(batch: Batch, world: int) -> Picture:
@@ -91,9 +105,13 @@ class BounceEnv(gym.Env[Observation, Any]):
         """Begin the next episode.
 
         seed: begins the stream of episodes anew; without it the stream goes on. options: `position` (x, y) [m] and
-        `velocity` (vx, vy) [m/s] of the launch in place of the seed's; anything else is a ValueError.
+        `velocity` (vx, vy) [m/s] of the launch and, where the game has levels, the `level` in place of the seed's; or
+        alone, without a seed, `snapshot`: what `clone_state` returned, to go on from. Anything else is a ValueError.
         """
-        start = start_rows(self._batch.game, 1, options)
+        snapshot, others = taken_snapshot(seed, options)
+        if snapshot is not None:
+            return self.restore_state(snapshot), self._info()
+        start = start_rows(self._batch.game, 1, others)
         super().reset(seed=seed)
         if seed is not None or not self._seeded:
             self._batch.seed(0, world_seed(self.np_random))
@@ -163,8 +181,9 @@ class BounceEnv(gym.Env[Observation, Any]):
             self._window = None
 
     def _info(self) -> dict[str, Any]:
-        episode = self._batch.episodes[0]
-        return {"score": float(episode.score), "ball": int(episode.ball)}
+        episode, levels = self._batch.episodes[0], self._batch.levels
+        info = {"score": float(episode.score), "ball": int(episode.ball)}
+        return info if levels is None else info | {"level": int(levels[0])}
 
 
 def _plain(value: Any) -> Any:
@@ -219,11 +238,13 @@ class PaddleEnv(BounceEnv):
     def __init__(
         self,
         *,
-        scene: str | PathLike[str] | Scene = "paddle",
+        scene: str | PathLike[str] | Scene | None = None,
         action: Literal["continuous", "discrete"] = "continuous",
         frame_skip: int = 2,
         repeat_action_probability: float = 0.0,
-        time_limit: float | None = 60.0,
+        time_limit: float | None = 90.0,
+        num_levels: int | None = None,
+        start_level: int = 0,
         render_mode: str | None = None,
         width: int | None = None,
         height: int | None = None,
@@ -234,6 +255,8 @@ class PaddleEnv(BounceEnv):
             frame_skip=frame_skip,
             repeat_action_probability=repeat_action_probability,
             time_limit=time_limit,
+            num_levels=num_levels,
+            start_level=start_level,
         )
         super().__init__(PaddleGame(options), render_mode, width, height)
 
@@ -317,7 +340,7 @@ class PinballEnv(BounceEnv):
     def __init__(
         self,
         *,
-        scene: str | PathLike[str] | Scene = "pinball",
+        scene: str | PathLike[str] | Scene | None = None,
         action: Literal["discrete", "buttons"] = "discrete",
         nudge: bool = False,
         balls: int = 3,

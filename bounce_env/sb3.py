@@ -68,6 +68,7 @@ class BounceVecEnv(VecEnv):
         self._lengths += 1
         infos: list[dict[str, Any]] = self._rows(info)
         for w in np.flatnonzero(dones).tolist():
+            self.reset_infos[w] = infos[w]
             final = info["final_info"]
             infos[w] = {key: _plain(value[w]) for key, value in final.items() if key[0] != "_"}
             infos[w]["terminal_observation"] = info["final_obs"][w]
@@ -112,8 +113,8 @@ class BounceVecEnv(VecEnv):
         return [None] * self.num_envs if frames is None else list(frames)
 
     def _rows(self, info: dict[str, Any]) -> list[dict[str, Any]]:
-        rows = zip(info["score"].tolist(), info["ball"].tolist(), strict=True)
-        return [{"score": score, "ball": ball} for score, ball in rows]
+        told = [name for name in ("score", "ball", "level") if name in info]
+        return [dict(zip(told, row, strict=True)) for row in zip(*(info[name].tolist() for name in told), strict=True)]
 
     def _option_rows(self) -> dict[str, Any]:
         """The options of `set_options`, one dict per world, as the batch takes them: one row per world."""

@@ -11,7 +11,15 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from bounce_env.env import PaddleEnv, PinballEnv, action_space, observation_space, picture_of, world_seed
+from bounce_env.env import (
+    PaddleEnv,
+    PinballEnv,
+    action_space,
+    observation_space,
+    picture_of,
+    taken_snapshot,
+    world_seed,
+)
 from bounce_env.games import episode
 from bounce_env.games.batch import Batch
 from bounce_env.games.clone import States
@@ -107,11 +115,14 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
     ) -> tuple[Observations, dict[str, Any]]:
         """Begin the next episode in all worlds, or in those of `options["reset_mask"]` (bool, one per world).
 
-        seed: an int (world i gets seed + i) or one per world. Other options as for the single env, one pair for all or
-        one row per world. Raises ValueError, and changes nothing, for what is not allowed.
+        seed: an int (world i gets seed + i) or one per world. Other options as for the single env, one for all or one
+        row per world. Raises ValueError, and changes nothing, for what is not allowed.
         """
         options = dict(options or {})
         mask = self._mask_of("options['reset_mask']", options.pop("reset_mask", None))
+        snapshot, options = taken_snapshot(seed, options)
+        if snapshot is not None:
+            return self.restore_state(snapshot, mask), self._info(mask)
         start = start_rows(self._batch.game, self.num_envs, options)
         self._seed_worlds(seed, mask)
         self._batch.reset(mask, start)
@@ -203,12 +214,13 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         return observations.copy() if self._copy else observations
 
     def _info(self, mask: Flags) -> dict[str, Any]:
-        return {
-            "score": np.where(mask, self._batch.episodes["score"], 0.0),
-            "_score": mask,
-            "ball": np.where(mask, self._batch.episodes["ball"], 0),
-            "_ball": mask,
-        }
+        told = {"score": self._batch.episodes["score"], "ball": self._batch.episodes["ball"]}
+        if self._batch.levels is not None:
+            told["level"] = self._batch.levels
+        info: dict[str, Any] = {}
+        for key, values in told.items():
+            info[key], info[f"_{key}"] = np.where(mask, values, 0), mask
+        return info
 
     def _tell_ends(self, info: dict[str, Any], ended: Flags) -> None:
         """Add what is said at an episode's end, as Gymnasium's own vector envs do: arrays with masks."""
@@ -221,6 +233,8 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         r = self._batch.results
         told |= {"score": r.ended["score"].copy(), "_score": ended}
         told |= {"ball": r.ended["ball"].copy(), "_ball": ended}
+        if self._batch.game.has_levels:
+            told |= {"level": r.ended["level"].copy(), "_level": ended}
         observations = np.full(self.num_envs, None, object)
         for w in np.flatnonzero(ended).tolist():
             observations[w] = r.final_observations[w].copy()

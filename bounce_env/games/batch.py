@@ -14,6 +14,7 @@ from bounce_env.games.clone import States, clone_rows, restore_rows
 from bounce_env.games.episode import END_REASONS, EPISODE, Results, Worlds, bind, new_results
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
+from bounce_env.scene import Scene
 
 Mask = npt.NDArray[np.bool_]
 
@@ -32,13 +33,16 @@ class Batch:
         self.worlds = worlds
         self.autoreset = autoreset
         point = game.scenes[0].ball.radius == 0.0
-        self.state: State = new_state(game.tables, worlds, 1, point)
+        self.tables, self.rules = game.for_worlds(worlds)
+        self._written = game.written(self.tables, self.rules)
+        self.state: State = new_state(self.tables, worlds, 1, point)
+        self._own_scenes()
         self.episodes: Array = np.zeros(worlds, EPISODE)
         self.results: Results = new_results(worlds, len(game.observation_high), len(game.counters))
         self.memory: Array | None = None if game.memory is None else np.zeros(worlds, game.memory)
         self.held = np.zeros((worlds, game.actions.width))
         self.counters = np.zeros((worlds, len(game.counters)))
-        self._start = np.full((worlds, 4), np.nan)
+        self._start = np.full((worlds, 5), np.nan)
         self._borders = np.linspace(0, worlds, min(num_threads, worlds) + 1).astype(int).tolist()
         self._threads: ThreadPoolExecutor | None = None
         self._handle: Any = None
@@ -46,13 +50,18 @@ class Batch:
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_threads": None, "_handle": None}
 
+    def _own_scenes(self) -> None:
+        """Where scenes are written at each beginning, world w has row w of the tables for itself."""
+        if self._written:
+            self.state.worlds["scene"] = np.arange(self.worlds)
+
     def seed(self, world: int, seed: np.uint64) -> None:
         """Let the stream of episodes of a world begin anew from `seed`."""
         self.episodes[world].world_seed = seed
         self.episodes[world].episodes = 0
 
     def reset(self, mask: Mask, start: npt.NDArray[np.float64] | None = None) -> None:
-        """Begin the next episode in the worlds of `mask`; `start` (worlds, 4): x, y, vx, vy, NaN for the seed's own."""
+        """Begin the next episode in the worlds of `mask`; `start` (worlds, 5): x, y, vx, vy, level; NaN: the seed's."""
         self._start[:] = np.nan if start is None else start
         reset_worlds(self._bound(), mask)
         self._start[:] = np.nan
@@ -60,10 +69,10 @@ class Batch:
     def _bound(self) -> Any:
         if self._handle is None:
             worlds = Worlds(
-                self.state, self.game.tables, self.episodes, self.memory, self.held, self.counters, self._start,
+                self.state, self.tables, self.episodes, self.memory, self.held, self.counters, self._start,
                 self.results,
             )  # fmt: skip
-            self._handle = bind(self.game.rules, worlds)
+            self._handle = bind(self.rules, worlds)
         return self._handle
 
     def step(self, actions: Array) -> int:
@@ -93,11 +102,12 @@ class Batch:
     def restore(self, states: States, mask: Mask) -> None:
         """Let the worlds of `mask` go on from `states`; raises ValueError where they are not of an equal batch."""
         restore_rows(self._digest, self._rows(), mask, states)
+        self._own_scenes()
 
     def _rows(self) -> tuple[Array, ...]:
         """All arrays with a row for each world that steps read."""
         results = (array for name, array in zip(Results._fields, self.results, strict=True) if name != "busy")
-        arrays = (*self.state, self.episodes, self.memory, self.held, self.counters, *results)
+        arrays = (*self.state, *self._written, self.episodes, self.memory, self.held, self.counters, *results)
         return tuple(array for array in arrays if array is not None)
 
     @cached_property
@@ -127,10 +137,19 @@ class Batch:
 
     def view(self, world: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Balls (1, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of a world now."""
-        parts = self.game.tables.parts
+        parts = self.tables.parts
         balls, cores = np.empty((1, 4)), np.empty((0 if parts is None else parts.shape[1], 4))
-        view(self.state, self.game.tables, world, balls, cores)
+        view(self.state, self.tables, world, balls, cores)
         return balls, cores
+
+    @property
+    def levels(self) -> npt.NDArray[np.int64] | None:
+        """The level that each world plays, (worlds,); None where the game has none."""
+        return self.episodes["level"].copy() if self.game.has_levels else None
+
+    def scene(self, world: int) -> Scene:
+        """The scene that a world plays now."""
+        return self.game.scene_on(None if self.levels is None else int(self.levels[world]))
 
     def close(self) -> None:
         """End the threads."""

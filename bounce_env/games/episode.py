@@ -20,14 +20,17 @@ EPISODE = record(
     frames="i8",  # 1 / fps each, since the episode began
     score="f8",
     ball="i8",  # which one is played, from 0 on
+    level="i8",  # which one it is played on; NO_LEVEL in a game without
     end="i8",  # how the episode has ended
 )  # fmt: skip
 
-BOOKS = record(seconds="f8", score="f8", ball="i8", end="i8", bounces="i8", speed_capped="i8")
+BOOKS = record(seconds="f8", score="f8", ball="i8", level="i8", end="i8", bounces="i8", speed_capped="i8")
 
 # How an episode ends; END_REASONS names them in info["end_reason"].
 RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET = 0, 1, 2, 3
 END_REASONS = (None, "drained", "time_limit", "budget")
+
+NO_LEVEL = -1
 
 # Autoreset modes, as in gymnasium.vector.AutoresetMode.
 NEXT_STEP, SAME_STEP, DISABLED = 0, 1, 2
@@ -60,7 +63,7 @@ class Worlds(NamedTuple):
     memory: Any  # (worlds,) of the game's own record: what its rules remember; None: nothing
     held: Array  # (worlds, controls) float64: the action in force, which a sticky one repeats
     counters: Array  # (worlds, counters) float64: what the game counts in an episode
-    start: Array  # (worlds, 4) x, y, vx, vy of a launch in place of the seed's; NaN for the seed's own
+    start: Array  # (worlds, 5) x, y, vx, vy of a launch and the level in place of the seed's; NaN for the seed's own
     results: Results
 
 
@@ -140,7 +143,7 @@ def begin_episode(worlds: Worlds, w: int) -> Record:
     episode = worlds.episodes[w]
     episode.seed = bits(episode.world_seed, EPISODES, episode.episodes)
     episode.episodes += 1
-    episode.frames, episode.ball, episode.end, episode.score = 0, 0, RUNNING, 0.0
+    episode.frames, episode.ball, episode.level, episode.end, episode.score = 0, 0, NO_LEVEL, RUNNING, 0.0
     for j in range(worlds.held.shape[1]):
         worlds.held[w, j] = 0.0
     for j in range(worlds.counters.shape[1]):
@@ -162,7 +165,7 @@ def close_books(worlds: Worlds, w: int) -> None:
     """Note how the episode of world `w` ended, before anything of it is reset."""
     ended, episode, world = worlds.results.ended[w], worlds.episodes[w], worlds.state.worlds[w]
     ended.seconds, ended.score = episode.frames / FPS, episode.score
-    ended.ball, ended.end = episode.ball, episode.end
+    ended.ball, ended.level, ended.end = episode.ball, episode.level, episode.end
     ended.bounces, ended.speed_capped = world.bounces, world.speed_capped
     for j in range(worlds.counters.shape[1]):
         worlds.results.counted[w, j] = worlds.counters[w, j]
@@ -172,7 +175,7 @@ def close_books(worlds: Worlds, w: int) -> None:
 def open_books(results: Results, w: int) -> None:
     """Forget how an episode of world `w` ended."""
     ended = results.ended[w]
-    ended.seconds, ended.score, ended.ball, ended.end = 0.0, 0.0, 0, RUNNING
+    ended.seconds, ended.score, ended.ball, ended.level, ended.end = 0.0, 0.0, 0, 0, RUNNING
     ended.bounces, ended.speed_capped = 0, 0
     for j in range(results.counted.shape[1]):
         results.counted[w, j] = 0.0

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.layout import Tables
+from bounce_env.engine.layout import Array, Tables
 from bounce_env.engine.pack import pack
 from bounce_env.games.actions import Actions
 from bounce_env.games.episode import FPS
@@ -26,6 +26,7 @@ class Game:
 
     counters: ClassVar[tuple[str, ...]]  # what is told at an episode's end of what the game has counted
     memory: ClassVar[np.dtype[Any] | None] = None  # what its rules remember of a world
+    has_levels: bool = False
 
     actions: Actions
     rules: Any
@@ -35,10 +36,27 @@ class Game:
 
     def __init__(self, options: Options) -> None:
         self.options = options
-        scene = options.scene if isinstance(options.scene, Scene) else load_scene(options.scene)
-        self.scenes: tuple[Scene, ...] = (scene,)
+        scene = self.default_scene if options.scene is None else options.scene
+        self.scenes: tuple[Scene, ...] = (scene if isinstance(scene, Scene) else load_scene(scene),)
         self.tables: Tables = pack(self.scenes)
         self.step_seconds = options.frame_skip / FPS
+
+    @property
+    def default_scene(self) -> str:
+        """The built-in scene that is played where the user chose none."""
+        raise NotImplementedError
+
+    def for_worlds(self, worlds: int) -> tuple[Tables, Any]:
+        """Tables and rules for a batch of so many worlds."""
+        return self.tables, self.rules
+
+    def written(self, tables: Tables, rules: Any) -> tuple[Array, ...]:
+        """What `begin` writes of a batch's tables and rules, a row for each world; () where all play one scene."""
+        return ()
+
+    def scene_on(self, level: int | None) -> Scene:
+        """The scene of a level; None where the game has none."""
+        return self.scenes[0]
 
     def lamps(self, memory: Any) -> npt.NDArray[np.bool_] | None:
         """Which elements are lit in a world of which the rules remember this; None: the game has no lamps."""

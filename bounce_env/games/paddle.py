@@ -1,24 +1,22 @@
 """The rules of the paddle game: keep the ball in play, send it into the bumpers."""
 
 import math
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from bounce_env.engine.command import command, command_unwatched
 from bounce_env.engine.disturb import place
-from bounce_env.engine.jit import Table, borrow, function
-from bounce_env.engine.layout import OUT, Array, State, Tables, record
+from bounce_env.engine.jit import Table, function
+from bounce_env.engine.layout import OUT, Array, State, Tables
 from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
-from bounce_env.engine.pack import direction
 from bounce_env.engine.parts import offset_at
 from bounce_env.engine.trig import sin_cos
 from bounce_env.engine.view import ball_now
 from bounce_env.games.actions import Continuous, Discrete
 from bounce_env.games.episode import (
     DRAINED,
-    FPS,
-    MAX_EVENTS,
     OUT_OF_BUDGET,
     RUNNING,
     TIME_LIMIT,
@@ -27,114 +25,39 @@ from bounce_env.games.episode import (
     hold_action,
     open_books,
 )
-from bounce_env.games.game import Game, frame_limit
+from bounce_env.games.game import Game
+from bounce_env.games.levels import (
+    NONE,
+    bumper_bounds,
+    drawn_level,
+    enter_level,
+    level_scene,
+    observe_bumpers,
+)
 from bounce_env.games.options import PaddleOptions
+from bounce_env.games.paddle_rules import (
+    BUMPER_POINTS,
+    LAUNCH_ANGLE,
+    LAUNCH_SPEED,
+    LAUNCH_X,
+    LAUNCH_Y,
+    OBSERVATION_SIZE,
+    REFERENCE_SPEED,
+    TOUCHES,
+    Rules,
+    borrow_rules,
+    field_of,
+    new_rules,
+    speed_bound,
+)
 from bounce_env.games.rules import is_game
 from bounce_env.games.streams import LAUNCHES, uniform
-from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
-
-# The launch: place as shares of the field, so that it fits the scenes of users, too.
-LAUNCH_X = (0.2, 0.8)
-LAUNCH_Y = 0.4
-LAUNCH_SPEED = 1.5  # m/s
-LAUNCH_ANGLE = (math.radians(30.0), math.radians(150.0))
-
-REFERENCE_SPEED = 2.0  # m/s; the speed that is observed as 1
-POINTS = 1.0  # a bumper hit
-
-OBSERVATION_SIZE = 5
-
-FIELD = record(
-    x="f8", width="f8", y="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
-    x_scale="f8", y_scale="f8", rail_scale="f8",  # [1/m] from metres to the observation
-    paddle="i8", part="i8",  # its element, and which of the parts it is
-)  # fmt: skip
-
-
-# What is counted, in the order of `PaddleGame.counters`.
-BUMPER_POINTS, TOUCHES = 0, 1
-
-
-class Rules(NamedTuple):
-    """What the kernel needs to know of the game beside the scene."""
-
-    fields: Array  # (scenes,) FIELD
-    points: Array  # (scenes, elements) float64: for a hit of each element
-    fps: float
-    frame_skip: int
-    limit: float  # frames after which an episode is truncated; inf for never
-    repeat: float  # probability per frame that the last action is repeated
-    max_events: int
-
-
-@function
-def borrow_rules(rules: Rules) -> Rules:
-    """The same rules, borrowed; see `engine.jit.borrow`."""
-    return Rules(
-        borrow(rules.fields),
-        borrow(rules.points),
-        rules.fps,
-        rules.frame_skip,
-        rules.limit,
-        rules.repeat,
-        rules.max_events,
-    )
-
-
-def field_of(scene: Scene) -> tuple[float, float, float, float]:
-    """Lower left corner and size (x, y, width, height) [m] of the field: walls to the sides and above, drain below.
-
-    Raises ValueError where the scene cannot be played: it must have exactly one paddle, a drain, a bumper, a ball with
-    a radius and a `max_speed`.
-    """
-    walls = [e for e in scene.elements if isinstance(e, Wall | Arc)]
-    drains = [e for e in scene.elements if isinstance(e, Sensor) and e.drain]
-    paddles = sum(isinstance(e, Paddle) for e in scene.elements)
-    needs = {
-        f"paddles = {paddles}: must be exactly 1": paddles == 1,
-        "drains = 0: must be at least 1 (a sensor with drain = true)": drains,
-        "bumpers = 0: must be at least 1": any(isinstance(e, Bumper) for e in scene.elements),
-        "walls = 0: must be at least 1": any(isinstance(e, Wall) for e in walls),
-        "ball.radius = 0.0: must be > 0": scene.ball.radius > 0.0,
-        "max_speed = None: must be given": scene.max_speed is not None,
-    }
-    problems = [words for words, met in needs.items() if not met]
-    if problems:
-        raise ValueError("a scene for the paddle game: " + "; ".join(problems))
-    left, right = min(w.bounds[0] for w in walls), max(w.bounds[2] for w in walls)
-    below, above = min(d.bounds[1] for d in drains), max(w.bounds[3] for w in walls)
-    return left, below, right - left, above - below
-
-
-def new_rules(scenes: tuple[Scene, ...], options: PaddleOptions) -> Rules:
-    """The rules for a batch whose worlds play `scenes`; see `field_of` for what a scene must have."""
-    fields = np.zeros(len(scenes), FIELD)
-    points = np.zeros((len(scenes), max(len(s.elements) for s in scenes)))
-    for s, scene in enumerate(scenes):
-        x, y, width, height = field_of(scene)
-        paddle = next(i for i, e in enumerate(scene.elements) if isinstance(e, Paddle))
-        rail = scene.elements[paddle]
-        assert isinstance(rail, Paddle)
-        span = direction(rail.rail_start, rail.rail_end)[2]
-        part = [i for i, _ in scene.parts].index(paddle)
-        fields[s] = (x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, paddle, part)
-        points[s, : len(scene.elements)] = [POINTS * isinstance(e, Bumper) for e in scene.elements]
-    repeat = options.repeat_action_probability
-    return Rules(fields, points, float(FPS), options.frame_skip, frame_limit(options), repeat, MAX_EVENTS)
-
-
-def speed_bound(scene: Scene) -> float:
-    """The fastest [m/s] that a ball is seen: the cap acts at bounces, and it may fall through the field after one."""
-    _, _, width, height = field_of(scene)
-    gx, gy = scene.gravity
-    assert scene.max_speed is not None
-    fastest = max(scene.max_speed, LAUNCH_SPEED)
-    return math.sqrt(fastest**2 + 2.0 * (abs(gx) * width + abs(gy) * height))
+from bounce_env.scene import Scene
 
 
 @function
 def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
-    """Ball's place and velocity and the paddle's place, each scaled so that usual values spread over [-1, 1]."""
+    """Ball, paddle and bumpers, each number scaled so that usual values spread over [-1, 1]."""
     state = worlds.state
     field = rules.fields[state.worlds[w].scene]
     x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
@@ -144,8 +67,9 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     out[w, 3] = vy * (1.0 / REFERENCE_SPEED)
     # The product may exceed the ends of the range by its rounding.
     out[w, 4] = min(max(paddle_offset(state, state.motions, field.part, w) * field.rail_scale - 1.0, -1.0), 1.0)
-    if out.shape[1] > OBSERVATION_SIZE:
-        out[w, OBSERVATION_SIZE] = clipped(worlds.held[w, 0])
+    observe_bumpers(rules.levels, state, worlds.tables, field, w, out, OBSERVATION_SIZE)
+    if rules.repeat > 0.0:
+        out[w, out.shape[1] - 1] = clipped(worlds.held[w, 0])
 
 
 @function
@@ -182,8 +106,18 @@ def launch(rules: Rules, worlds: Worlds, seed: Any, w: int) -> None:
 def begin(rules: Rules, worlds: Worlds, w: int) -> None:
     """Begin the next episode of world `w`."""
     episode = begin_episode(worlds, w)
+    if rules.levels.number != NONE:
+        begin_level(rules, worlds, w)
     restart(worlds.state, worlds.tables, w)
     launch(rules, worlds, episode.seed, w)
+
+
+@function
+def begin_level(rules: Rules, worlds: Worlds, w: int) -> None:
+    """Arrange the bumpers of world `w`: of the level that `worlds.start` says, where that is NaN of the seed's."""
+    episode, asked = worlds.episodes[w], worlds.start[w, 4]
+    episode.level = drawn_level(rules.levels, episode.seed) if math.isnan(asked) else int(asked)
+    enter_level(rules.levels, worlds.tables, worlds.state.worlds[w].scene, episode.level)
 
 
 @function
@@ -289,14 +223,39 @@ class PaddleGame(Game):
     counters = ("points_bumpers", "touches")
 
     def __init__(self, options: PaddleOptions) -> None:
+        self.has_levels = options.num_levels is not None
         super().__init__(options)
-        self.rules = new_rules(self.scenes, options)
+        self.rules = new_rules(self.scenes[0], options)
         x, y, width, height = field_of(self.scenes[0])
         self.field = (x, y, x + width, y + height)
         self.actions = Discrete((-1.0, 0.0, 1.0)) if options.action == "discrete" else Continuous(1)
         speed = speed_bound(self.scenes[0]) / REFERENCE_SPEED
-        bounds = [1.0, 1.0, speed, speed, 1.0]
+        bounds = [1.0, 1.0, speed, speed, 1.0, *bumper_bounds(self.rules.levels)]
         if options.repeat_action_probability > 0.0:
             bounds.append(1.0)
         self.observation_high = np.array(bounds, np.float32)
         self.observation_low = -self.observation_high
+
+    @property
+    def default_scene(self) -> str:
+        """With levels that with a bumper on a rail."""
+        return "paddle_levels" if self.has_levels else "paddle"
+
+    def for_worlds(self, worlds: int) -> tuple[Tables, Rules]:
+        """With levels each world has its own row of every table."""
+        if not self.has_levels:
+            return self.tables, self.rules
+        rules, rows = self.rules, partial(np.repeat, repeats=worlds, axis=0)
+        tables = Tables._make(None if table is None else rows(table) for table in self.tables)
+        levels = rules.levels._replace(bumpers=rows(rules.levels.bumpers))
+        return tables, rules._replace(fields=rows(rules.fields), points=rows(rules.points), levels=levels)
+
+    def written(self, tables: Tables, rules: Rules) -> tuple[Array, ...]:
+        """Where the bumpers of a level are."""
+        if not self.has_levels:
+            return ()
+        return tuple(a for a in (rules.levels.bumpers, tables.circles, tables.parts) if a is not None)
+
+    def scene_on(self, level: int | None) -> Scene:
+        """The scene with its bumpers where they are on the level."""
+        return self.scenes[0] if level is None else level_scene(self.scenes[0], self.rules.levels, level)

@@ -350,6 +350,11 @@ class PinballGame(Game):
         self.field = outline(self.scenes[0])
         self.observation_low, self.observation_high = self._bounds(layout, options)
 
+    @property
+    def default_scene(self) -> str:
+        """The table of the card."""
+        return "pinball"
+
     def lamps(self, memory: Any) -> npt.NDArray[np.bool_]:
         """Targets that are lit, and rollovers that are."""
         layout = self.rules.layout

@@ -1,4 +1,4 @@
-"""The `options` of a reset: where the ball is launched in place of what the seed says."""
+"""The `options` of a reset: where the ball is launched, and on which level, in place of what the seed says."""
 
 import math
 from collections.abc import Mapping
@@ -9,20 +9,26 @@ import numpy.typing as npt
 
 from bounce_env.engine.overlap import cleared, cores_at_start
 from bounce_env.games.game import Game
+from bounce_env.games.levels import END_OF_LEVELS
 
-ALLOWED = ("position", "velocity")
+PAIRS = ("position", "velocity")
+LEVEL = "level"
 
 
 def start_rows(game: Game, worlds: int, options: Mapping[str, Any] | None) -> npt.NDArray[np.float64]:
-    """Launches (worlds, 4): x, y [m], vx, vy [m/s], NaN where the seed decides.
+    """Beginnings (worlds, 5): x, y [m], vx, vy [m/s] of the launch and the level, NaN where the seed decides.
 
-    Each option is one pair for all worlds or one row for each. Raises ValueError for an unknown option, another shape,
-    what is not finite, a speed above the scene's `max_speed`, and a ball that overlaps an element or is off the field.
+    Each option is one pair, or level, for all worlds or one for each. Raises ValueError for an unknown option, another
+    shape, what is not finite, no level, a place without the level it is on, a speed above the scene's `max_speed`, and
+    a ball that overlaps an element or is off the field.
     """
-    rows = np.full((worlds, 4), np.nan)
-    for name, value in (options or {}).items():
-        if name not in ALLOWED:
-            raise ValueError(f"options[{name!r}]: must be one of {', '.join(ALLOWED)}")
+    rows = np.full((worlds, 5), np.nan)
+    given = dict(options or {})
+    if game.has_levels and LEVEL in given:
+        rows[:, 4] = _levels(given.pop(LEVEL), worlds)
+    for name, value in given.items():
+        if name not in PAIRS:
+            raise ValueError(f"options[{name!r}]: must be one of {', '.join((*PAIRS, LEVEL)[: 2 + game.has_levels])}")
         try:
             pairs = np.asarray(value, np.float64)
         except (TypeError, ValueError):  # not numbers, or of no shape at all
@@ -33,16 +39,27 @@ def start_rows(game: Game, worlds: int, options: Mapping[str, Any] | None) -> np
             )
         if not np.isfinite(pairs).all():
             raise ValueError(f"options[{name!r}] = {value!r}: must be finite")
-        first = 2 * ALLOWED.index(name)
+        first = 2 * PAIRS.index(name)
         rows[:, first : first + 2] = pairs
-    for row in rows if options else ():
+    for row in rows if given else ():
         _check(game, row)
     return rows
 
 
+def _levels(value: Any, worlds: int) -> npt.NDArray[np.int64]:
+    levels = np.asarray(value)
+    if levels.dtype.kind not in "iu" or levels.shape not in ((), (worlds,)):
+        raise ValueError(f"options['level'] = {value!r}: must be a whole number, or one for each of {worlds} worlds")
+    if (levels < 0).any() or (levels >= END_OF_LEVELS).any():
+        raise ValueError(f"options['level'] = {value!r}: must be 0 to {END_OF_LEVELS - 1}")
+    return levels.astype(np.int64)
+
+
 def _check(game: Game, row: npt.NDArray[np.float64]) -> None:
-    scene = game.scenes[0]
-    x, y, vx, vy = row.tolist()
+    x, y, vx, vy, level = row.tolist()
+    if game.has_levels and math.isnan(level) and not math.isnan(x):
+        raise ValueError("options['position']: options['level'] must be given, too; levels have different bumpers")
+    scene = game.scene_on(None if math.isnan(level) else int(level))
     left, below, right, above = game.field
     below += scene.ball.radius  # a centre that starts on the drain never crosses it
     if not math.isnan(x):

@@ -138,8 +138,8 @@ class Bumper(_Surface):
     """A circle that bounces the ball outside of it, and may move to and fro on a rail.
 
     center: (x, y) in metres. radius: metres, > 0. rail_end: where its centre turns back, (x, y) in metres, if it moves
-    to there and back from `center`; None for a bumper that stands. speed: at which it does so, m/s, > 0 with a
-    `rail_end`, otherwise 0. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
+    to there and back from `center`; None for a bumper that stands. speed: at which it does so, m/s, 0 (it stands at
+    `center`) or more, 0 without a `rail_end`. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
     """
 
     center: Vector
@@ -152,8 +152,8 @@ class Bumper(_Surface):
 
     @model_validator(mode="after")
     def _check_speed(self) -> Self:
-        if (self.speed > 0.0) != (self.rail_end is not None):
-            problem = not_allowed("> 0 with a rail_end, and 0 without one")
+        if self.speed > 0.0 and self.rail_end is None:
+            problem = not_allowed("0 without a rail_end")
             details = [InitErrorDetails(type=problem, loc=("speed",), input=self.speed)]
             raise ValidationError.from_exception_data("Bumper", details)
         return self

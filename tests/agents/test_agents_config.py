@@ -9,8 +9,9 @@ import pytest
 import yaml
 from stable_baselines3 import PPO
 
+from agents.algorithms import ALGORITHMS, PPOHyperparameters
 from agents.command import Refused
-from agents.config import Hyperparameters, load_config
+from agents.config import load_config
 from agents.task import Task
 
 ROOT = Path(__file__).parents[2]
@@ -21,7 +22,7 @@ def refusal(tmp_path: Path, entry: str, **overrides: object) -> str:
     path = tmp_path / "bad.yml"
     path.write_text(f"{ENV_ID}: {entry}")
     with pytest.raises(Refused) as caught:
-        load_config(path, ENV_ID, overrides)
+        load_config(path, ENV_ID, overrides, PPOHyperparameters)
     message = str(caught.value)
     assert str(path) in message
     return message
@@ -78,12 +79,12 @@ def test_a_file_that_is_no_config(tmp_path: Path, text: str, words: str) -> None
     path = tmp_path / "bad.yml"
     path.write_text(text)
     with pytest.raises(Refused, match=words):
-        load_config(path, ENV_ID, {})
+        load_config(path, ENV_ID, {}, PPOHyperparameters)
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(Refused, match="cannot be read"):
-        load_config(tmp_path / "none.yml", ENV_ID, {})
+        load_config(tmp_path / "none.yml", ENV_ID, {}, PPOHyperparameters)
 
 
 def test_overrides_are_checked_too(tmp_path: Path) -> None:
@@ -91,28 +92,31 @@ def test_overrides_are_checked_too(tmp_path: Path) -> None:
 
 
 def test_linear_schedule_falls_to_zero() -> None:
-    kwargs = Hyperparameters(n_timesteps=100, learning_rate="lin_1e-3").for_ppo()
+    kwargs = PPOHyperparameters(n_timesteps=100, learning_rate="lin_1e-3").for_sb3()
     schedule = kwargs["learning_rate"]
     # The argument is SB3's `progress_remaining`, from 1 to 0.
     np.testing.assert_allclose([schedule(1.0), schedule(0.5), schedule(0.0)], [1e-3, 5e-4, 0.0], atol=1e-18)
 
 
-def test_each_key_is_one_of_sb3_and_its_default_is_sb3s() -> None:
-    ours = Hyperparameters(n_timesteps=100).for_ppo()
-    env = Task(ENV_ID).for_sb3(1, seed=0)
-    theirs = PPO("MlpPolicy", env)
-    model = PPO(env=env, **ours)
+@pytest.mark.parametrize("algo", ALGORITHMS)
+def test_each_key_is_one_of_sb3_and_its_default_is_sb3s(algo: str) -> None:
+    parameters = ALGORITHMS[algo](n_timesteps=100)
+    ours, algorithm = parameters.for_sb3(), parameters.algorithm
+    env = Task(ENV_ID, {"action": "discrete" if algo == "dqn" else "continuous"}).for_sb3(1, seed=0)
+    theirs = algorithm("MlpPolicy", env)
+    model = algorithm(env=env, **ours)
     for key in set(ours) - {"policy", "policy_kwargs", "learning_rate", "clip_range"}:
-        assert ours[key] == getattr(theirs, key), key
-    for key in ("lr_schedule", "clip_range"):
+        assert getattr(model, key) == getattr(theirs, key), key
+    for key in {"lr_schedule", "clip_range"} & set(vars(theirs)):
         assert getattr(model, key)(0.5) == getattr(theirs, key)(0.5)
     assert str(model.policy) == str(theirs.policy)
 
 
-def test_the_shipped_config_is_valid() -> None:
-    text = (ROOT / "configs/ppo.yml").read_text()
-    for env_id in yaml.safe_load(text):
-        load_config(ROOT / "configs/ppo.yml", env_id, {})
+@pytest.mark.parametrize("algo", ALGORITHMS)
+def test_the_shipped_configs_are_valid(algo: str) -> None:
+    path = ROOT / f"configs/{algo}.yml"
+    for env_id in yaml.safe_load(path.read_text()):
+        load_config(path, env_id, {}, ALGORITHMS[algo])
 
 
 def test_rl_zoo_trains_with_the_shipped_config(tmp_path: Path) -> None:
@@ -124,7 +128,7 @@ def test_rl_zoo_trains_with_the_shipped_config(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     (model,) = tmp_path.glob("ppo/*/Bounce-Paddle-v0.zip")
     trained = PPO.load(model, device="cpu")
-    config = load_config(ROOT / "configs/ppo.yml", ENV_ID, {})
+    config = load_config(ROOT / "configs/ppo.yml", ENV_ID, {}, PPOHyperparameters)
     assert trained.num_timesteps == 128
     assert trained.policy_kwargs["net_arch"] == config.policy_kwargs.net_arch
     assert trained.gamma == config.gamma

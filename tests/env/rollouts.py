@@ -14,7 +14,7 @@ PADDLE, PINBALL = "Bounce/Paddle-v0", "Bounce/Pinball-v0"
 MODES = ("NEXT_STEP", "SAME_STEP", "DISABLED")
 KINDS = [
     {"action": action, "repeat_action_probability": p} for action, p in product(("continuous", "discrete"), (0.0, 0.25))
-]
+] + [{"action": "continuous", "repeat_action_probability": 0.25, "num_levels": 40}]
 PINBALL_KINDS = [
     {"action": action, "repeat_action_probability": p} for action, p in product(("discrete", "buttons"), (0.0, 0.25))
 ]
@@ -25,7 +25,8 @@ VARIANTS = [(entry.id, kwargs) for entry in ENTRIES for kwargs in KINDS_OF[entry
 def name(value: object) -> str | None:
     """How pytest calls a variant's kwargs."""
     if isinstance(value, dict):
-        return f"{value['action']}-{'sticky' if value['repeat_action_probability'] else 'plain'}"
+        sticky = "sticky" if value["repeat_action_probability"] else "plain"
+        return f"{value['action']}-{sticky}{'-levels' if 'num_levels' in value else ''}"
     return None
 
 

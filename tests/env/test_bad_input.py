@@ -136,7 +136,8 @@ def test_one_bad_action_moves_no_world(kind, actions, message, threads):
 
 BAD_OPTIONS = [
     ({"level": 1}, "options\\['level'\\]: must be one of position, velocity"),
-    ({"snapshot": b""}, "options\\['snapshot'\\]: must be one of position, velocity"),
+    ({"snapshot": b""}, "options\\['snapshot'\\]: must come without seed"),
+    ({"level": 3}, "options\\['level'\\]: must be one of position, velocity"),
     ({"position": (0.5, 0.8)}, "\\(0.5, 0.8\\) overlaps .*bumper_bottom.* at least 0.08 m away"),
     ({"position": (0.01, 0.6)}, "\\(0.01, 0.6\\) overlaps .*'left'.* at least 0.02 m away"),
     ({"position": (0.5, 0.09)}, "\\(0.5, 0.09\\) overlaps .*'paddle'"),

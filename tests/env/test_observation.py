@@ -11,10 +11,10 @@ from conftest import soak_count
 from rollouts import KINDS, PADDLE, assert_same, make_vec, name, scripted
 
 from bounce_env import Bumper, load_scene
-from bounce_env.games.paddle import TOUCHES
+from bounce_env.games.paddle_rules import TOUCHES
 
 WIDTH, BOTTOM, TOP = 1.0, -0.03, 1.4  # [m] the walls, the drain
-LEFT_STOP, RIGHT_STOP = 0.145, 0.855  # [m] of the paddle's centre
+LEFT_STOP, RIGHT_STOP = 0.12, 0.88  # [m] of the paddle's centre
 EACH_STEP = {"score": float, "ball": int}
 AT_THE_END = {
     "end_reason": str,
@@ -34,7 +34,7 @@ def follow(observations):
 
 def expected_observation(env):
     """The card's formulas, in float64, from the state in metres."""
-    ((x, y, vx, vy),), ((left, _, right, _),) = env.unwrapped._batch.view(0)
+    ((x, y, vx, vy),), (*_, (left, _, right, _)) = env.unwrapped._batch.view(0)
     paddle = (left + right) / 2
     place = (paddle - LEFT_STOP) / (RIGHT_STOP - LEFT_STOP)
     return np.array([2 * x / WIDTH - 1, 2 * (y - BOTTOM) / (TOP - BOTTOM) - 1, vx / 2, vy / 2, 2 * place - 1])
@@ -156,7 +156,7 @@ def test_sticky_actions_are_observed():
         applied.add(bool(observation[5] == action))
         moved = observation[4] - before[4]
         if abs(observation[4]) < 1 and observation[5] == before[5]:
-            assert moved == pytest.approx(2 * 1.5 / 30 / 0.71 * before[5], abs=1e-6)
+            assert moved == pytest.approx(2 * 1.5 / 30 / 0.76 * before[5], abs=1e-6)
         if terminated:
             break
     assert applied == {True, False}
@@ -180,17 +180,18 @@ def test_a_hit_of_a_bumper_is_worth_one_point_and_nothing_else_is():
 @pytest.mark.parametrize("kwargs", KINDS, ids=name)
 def test_single_infos_are_plain_and_as_on_the_card(kwargs):
     env = gym.make(PADDLE, time_limit=1.5, **kwargs)
+    each_step = EACH_STEP | ({"level": int} if "num_levels" in kwargs else {})
     env.action_space.seed(0)
     reasons = []
     for k in range(12):
         _, info = env.reset(seed=k)
-        assert {key: type(value) for key, value in info.items()} == EACH_STEP
+        assert {key: type(value) for key, value in info.items()} == each_step
         total, ended, steps = 0.0, False, 0
         while not ended:
             _, reward, terminated, truncated, info = env.step(env.action_space.sample())
             total, steps, ended = total + reward, steps + 1, terminated or truncated
             assert [type(v) for v in (reward, terminated, truncated)] == [float, bool, bool]
-            kinds = EACH_STEP | AT_THE_END if ended else EACH_STEP
+            kinds = each_step | AT_THE_END if ended else each_step
             assert {key: type(value) for key, value in info.items()} == kinds
             assert (info["score"], info["ball"]) == (total, 0)
         assert info["end_reason"] == ("drained" if terminated else "time_limit")

@@ -51,7 +51,10 @@ def test_a_spec_goes_through_json_and_makes_the_same_env(env_id, kwargs):
     made.action_space.seed(0)
     for _ in range(20):
         action = made.action_space.sample()
-        assert_same(again.step(action), made.step(action))
+        step = made.step(action)
+        assert_same(again.step(action), step)
+        if step[2]:
+            assert_same(again.reset(), made.reset())
 
 
 @pytest.mark.parametrize("mode", MODES)

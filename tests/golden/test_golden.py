@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 GOLDEN = {
-    "Bounce/Paddle-v0": "8262c51e9dfa2cae83b407469567efc32cef76a80a42e55682dc7957aaa47a1e",
+    "Bounce/Paddle-v0": "882cd901166dabf4fe8977cd69258c1e6eafc5e7b76ef6453636773070917294",
     "Bounce/Pinball-v0": "99e377fbe90eb02940dd88caac1017fa650a6ce0338741c78b834216c7b9d61a",
 }
 TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0}

@@ -23,8 +23,8 @@ def elements(scene: Scene, spec: type) -> list:
     return [element for element in scene.elements if isinstance(element, spec)]
 
 
-def test_there_are_five():
-    assert builtin_scenes() == ("box", "guides", "paddle", "pegs", "pinball")
+def test_which_there_are():
+    assert builtin_scenes() == ("box", "guides", "paddle", "paddle_levels", "pegs", "pinball")
 
 
 @pytest.mark.parametrize("spec", [Scene, Ball, *get_args(Element)], ids=lambda spec: spec.__name__)
@@ -77,14 +77,15 @@ def test_paddle_is_the_field_of_the_game():
     assert all(bumper.b > 1 for bumper in bumpers)
 
 
-def test_the_paddle_can_crush_nothing():
-    scene = load_scene("paddle")
+@pytest.mark.parametrize("name", ["paddle", "paddle_levels"])
+def test_the_paddle_can_crush_nothing(name):
+    scene = load_scene(name)
     [paddle] = elements(scene, Paddle)
     x_min, _, x_max, _ = paddle.bounds
     assert x_min == pytest.approx(0.045)
     assert 1.0 - x_max == pytest.approx(0.045)
     assert min(x_min, 1.0 - x_max) > 2 * scene.ball.radius
-    assert paddle.half_width + paddle.radius == pytest.approx(0.1)
+    assert paddle.half_width + paddle.radius == pytest.approx(0.075)
     assert paddle.rail_start[1] == paddle.rail_end[1] == 0.08
     assert (paddle.name, paddle.max_speed, paddle.f, paddle.b) == ("paddle", 1.5, 0.5, 0.9)
     assert (paddle.kick, paddle.kick_threshold) == (1.0, 0.0)

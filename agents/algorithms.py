@@ -1,0 +1,132 @@
+"""Stable-Baselines3's algorithms by name, and what a config may say of each: RL Zoo's keys with SB3's defaults."""
+
+from typing import Any, ClassVar, Literal, TypeAlias
+
+from pydantic import Field, model_validator
+from stable_baselines3 import DQN, PPO, SAC
+from stable_baselines3.common.utils import LinearSchedule
+
+from agents.config import Count, Flag, Layers, NotNegative, Number, Positive, Schedule, Share, Strict
+
+Model: TypeAlias = PPO | DQN | SAC
+
+
+class Hyperparameters(Strict):
+    """What all algorithms have in common. `n_timesteps` must be given."""
+
+    algorithm: ClassVar[type[PPO | DQN | SAC]]
+    schedules: ClassVar[tuple[str, ...]] = ("learning_rate",)
+
+    n_timesteps: Count
+    n_envs: Count = 1
+    env_kwargs: dict[str, Any] = Field(default={})
+    policy: Literal["MlpPolicy"] = "MlpPolicy"
+    gamma: Share = 0.99
+
+    def for_sb3(self) -> dict[str, Any]:
+        """Keyword arguments of the algorithm, beside the environment."""
+        kwargs = self.model_dump(exclude={"n_timesteps", "n_envs", "env_kwargs"})
+        return kwargs | {key: as_schedule(kwargs[key]) for key in self.schedules}
+
+
+class PPOPolicyKwargs(Strict):
+    """The network; what SB3's MlpPolicy takes and YAML can say. `net_arch`: units of the hidden layers."""
+
+    net_arch: Layers = Field(default=[64, 64])
+    log_std_init: Number = 0.0
+    ortho_init: Flag = True
+
+
+class PPOHyperparameters(Hyperparameters):
+    """Proximal policy optimisation."""
+
+    algorithm = PPO
+    schedules = ("learning_rate", "clip_range", "clip_range_vf")
+
+    policy_kwargs: PPOPolicyKwargs = PPOPolicyKwargs()
+    n_steps: Count = 2048
+    batch_size: Count = 64
+    n_epochs: Count = 10
+    learning_rate: Schedule = 3e-4
+    clip_range: Schedule = 0.2
+    clip_range_vf: Schedule | None = None
+    gae_lambda: Share = 0.95
+    normalize_advantage: Flag = True
+    ent_coef: NotNegative = 0.0
+    vf_coef: NotNegative = 0.5
+    max_grad_norm: Positive = 0.5
+    use_sde: Flag = False
+    target_kl: Positive | None = None
+
+    @model_validator(mode="after")
+    def _batches_are_whole(self) -> "PPOHyperparameters":
+        if (self.n_envs * self.n_steps) % self.batch_size:
+            raise ValueError(f"batch_size must divide n_envs * n_steps = {self.n_envs * self.n_steps}")
+        return self
+
+
+class DQNPolicyKwargs(Strict):
+    """The network. `net_arch`: units of the hidden layers."""
+
+    net_arch: Layers = Field(default=[64, 64])
+
+
+class DQNHyperparameters(Hyperparameters):
+    """Deep Q-network; for games with a discrete action."""
+
+    algorithm = DQN
+
+    policy_kwargs: DQNPolicyKwargs = DQNPolicyKwargs()
+    learning_rate: Schedule = 1e-4
+    buffer_size: Count = 1_000_000
+    learning_starts: Count = 100
+    batch_size: Count = 32
+    tau: Share = 1.0
+    train_freq: Count = 4
+    gradient_steps: Count = 1
+    n_steps: Count = 1
+    target_update_interval: Count = 10_000
+    exploration_fraction: Share = 0.1
+    exploration_initial_eps: Share = 1.0
+    exploration_final_eps: Share = 0.05
+    max_grad_norm: Positive = 10.0
+
+
+class SACPolicyKwargs(Strict):
+    """The networks. `net_arch`: units of the hidden layers."""
+
+    net_arch: Layers = Field(default=[256, 256])
+
+
+class SACHyperparameters(Hyperparameters):
+    """Soft actor-critic; for games with a continuous action."""
+
+    algorithm = SAC
+
+    policy_kwargs: SACPolicyKwargs = SACPolicyKwargs()
+    learning_rate: Schedule = 3e-4
+    buffer_size: Count = 1_000_000
+    learning_starts: Count = 100
+    batch_size: Count = 256
+    tau: Share = 0.005
+    train_freq: Count = 1
+    gradient_steps: Count = 1
+    n_steps: Count = 1
+    target_update_interval: Count = 1
+
+
+def as_schedule(value: float | str | None) -> float | LinearSchedule | None:
+    """What SB3 takes for a config's number or "lin_NUMBER"."""
+    if isinstance(value, str):
+        return LinearSchedule(float(value.removeprefix("lin_")), 0.0, 1.0)
+    return value
+
+
+ALGORITHMS: dict[str, type[Hyperparameters]] = {
+    "ppo": PPOHyperparameters,
+    "dqn": DQNHyperparameters,
+    "sac": SACHyperparameters,
+}
+"""By the RL Zoo's names."""
+
+Algorithm: TypeAlias = Literal["ppo", "dqn", "sac"]

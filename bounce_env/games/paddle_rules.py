@@ -1,0 +1,118 @@
+"""What the paddle game's kernel needs to know of a scene and of what its user chose."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bounce_env.engine.jit import borrow, function
+from bounce_env.engine.layout import Array, record
+from bounce_env.engine.pack import direction
+from bounce_env.games.episode import FPS, MAX_EVENTS
+from bounce_env.games.game import frame_limit
+from bounce_env.games.levels import Levels, borrow_levels, levels_of
+from bounce_env.games.options import PaddleOptions
+from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
+
+# The launch: place as shares of the field, so that it fits the scenes of users, too.
+LAUNCH_X = (0.2, 0.8)
+LAUNCH_Y = 0.4
+LAUNCH_SPEED = 1.5  # m/s
+LAUNCH_ANGLE = (math.radians(30.0), math.radians(150.0))
+
+REFERENCE_SPEED = 2.0  # m/s; the speed that is observed as 1
+POINTS = 1.0  # a bumper hit
+
+OBSERVATION_SIZE = 5
+
+FIELD = record(
+    x="f8", width="f8", y="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
+    x_scale="f8", y_scale="f8", rail_scale="f8",  # [1/m] from metres to the observation
+    paddle="i8", part="i8",  # its element, and which of the parts it is
+)  # fmt: skip
+
+# What is counted, in the order of `PaddleGame.counters`.
+BUMPER_POINTS, TOUCHES = 0, 1
+
+
+class Rules(NamedTuple):
+    """What the kernel needs to know of the game beside the scene."""
+
+    fields: Array  # (scenes,) FIELD
+    levels: Levels
+    points: Array  # (scenes, elements) float64: for a hit of each element
+    fps: float
+    frame_skip: int
+    limit: float  # frames after which an episode is truncated; inf for never
+    repeat: float  # probability per frame that the last action is repeated
+    max_events: int
+
+
+@function
+def borrow_rules(rules: Rules) -> Rules:
+    """The same rules, borrowed; see `engine.jit.borrow`."""
+    return Rules(
+        borrow(rules.fields),
+        borrow_levels(rules.levels),
+        borrow(rules.points),
+        rules.fps,
+        rules.frame_skip,
+        rules.limit,
+        rules.repeat,
+        rules.max_events,
+    )
+
+
+def field_of(scene: Scene) -> tuple[float, float, float, float]:
+    """Lower left corner and size (x, y, width, height) [m] of the field: walls to the sides and above, drain below.
+
+    Raises ValueError where the scene cannot be played: it must have exactly one paddle, a drain, a bumper, a ball with
+    a radius and a `max_speed`.
+    """
+    walls = [e for e in scene.elements if isinstance(e, Wall | Arc)]
+    drains = [e for e in scene.elements if isinstance(e, Sensor) and e.drain]
+    paddles = sum(isinstance(e, Paddle) for e in scene.elements)
+    needs = {
+        f"paddles = {paddles}: must be exactly 1": paddles == 1,
+        "drains = 0: must be at least 1 (a sensor with drain = true)": drains,
+        "bumpers = 0: must be at least 1": any(isinstance(e, Bumper) for e in scene.elements),
+        "walls = 0: must be at least 1": any(isinstance(e, Wall) for e in walls),
+        "ball.radius = 0.0: must be > 0": scene.ball.radius > 0.0,
+        "max_speed = None: must be given": scene.max_speed is not None,
+    }
+    problems = [words for words, met in needs.items() if not met]
+    if problems:
+        raise ValueError("a scene for the paddle game: " + "; ".join(problems))
+    left, right = min(w.bounds[0] for w in walls), max(w.bounds[2] for w in walls)
+    below, above = min(d.bounds[1] for d in drains), max(w.bounds[3] for w in walls)
+    return left, below, right - left, above - below
+
+
+def new_rules(scene: Scene, options: PaddleOptions) -> Rules:
+    """The rules for one world that plays `scene`; see `field_of` for what it must have."""
+    field = field_of(scene)
+    x, y, width, height = field
+    paddle = next(i for i, e in enumerate(scene.elements) if isinstance(e, Paddle))
+    rail = scene.elements[paddle]
+    assert isinstance(rail, Paddle)
+    span = direction(rail.rail_start, rail.rail_end)[2]
+    part = [i for i, _ in scene.parts].index(paddle)
+    return Rules(
+        np.array([(x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, paddle, part)], FIELD),
+        levels_of(scene, field, options.num_levels, options.start_level),
+        np.array([[POINTS * isinstance(e, Bumper) for e in scene.elements]]),
+        float(FPS),
+        options.frame_skip,
+        frame_limit(options),
+        options.repeat_action_probability,
+        MAX_EVENTS,
+    )
+
+
+def speed_bound(scene: Scene) -> float:
+    """The fastest [m/s] that a ball is seen: the cap acts at bounces, and it may fall through the field after one."""
+    _, _, width, height = field_of(scene)
+    gx, gy = scene.gravity
+    assert scene.max_speed is not None
+    fastest = max(scene.max_speed, LAUNCH_SPEED)
+    return math.sqrt(fastest**2 + 2.0 * (abs(gx) * width + abs(gy) * height))

@@ -34,6 +34,7 @@ BASELINES: dict[str, dict[str, Callable[[Task], Player | LookAhead]]] = {
         "nothing": paddle_players.nothing,
         "follow": paddle_players.follow,
         "predictor": paddle_players.predictor,
+        "look_ahead": paddle_players.look_ahead,
     },
     "Bounce/Pinball-v0": {
         "random": random,

@@ -8,12 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from agents.command import Refused
+from agents.look_ahead import LookAhead
 from agents.task import Player, Task
 from bounce_env.games.episode import FPS
 from bounce_env.games.paddle_rules import REFERENCE_SPEED, field_of
 from bounce_env.scene import Paddle, Scene, Wall
 
 Floats = npt.NDArray[np.float64]
+HORIZON = 60  # steps that a plan looks ahead
+MOVES = (1, 2, 3, 5, 7, 10, 14, 19, 25)  # steps after which it goes on otherwise
 MAX_BOUNCES = 64
 """A ball that has bounced so often without landing never does."""
 
@@ -137,6 +140,21 @@ def time_to_side(table: Table, x: Floats, y: Floats, vx: Floats, vy: Floats) -> 
     with np.errstate(divide="ignore", invalid="ignore"):
         t = np.where(vx > 0.0, table.right - x, table.left - x) / vx
     return np.where(vx != 0.0, np.maximum(t, 0.0), np.inf)
+
+
+def look_ahead(task: Task) -> LookAhead:
+    """Tries out, before every step, to move for a while and then otherwise, and does what paid most.
+
+    Budget: 185 plans of 60 steps (2 s) for each step.
+    """
+    speeds, later = (-1.0, -0.5, 0.5, 1.0), (-1.0, -0.5, 0.0, 0.5, 1.0)
+    plans = [np.full(HORIZON, speed) for speed in (0.0, *speeds)]
+    for first in speeds:
+        for steps in MOVES:
+            plans += [np.where(np.arange(HORIZON) < steps, first, second) for second in later]
+    if task.resolved_kwargs["action"] == "discrete":
+        return LookAhead(task, 1 + np.sign(plans).astype(np.int64))
+    return LookAhead(task, np.array(plans, np.float32)[:, :, None])
 
 
 class Mover:

@@ -13,7 +13,7 @@ from gymnasium.envs.registration import load_env_creator
 from agents.command import Refused
 from bounce_env.registration import ENTRIES
 from bounce_env.sb3 import BounceVecEnv
-from bounce_env.scene import Scene, load_scene
+from bounce_env.scene import Scene
 
 Player = Callable[[npt.NDArray[np.float32]], npt.NDArray[Any]]
 """From observations (n, size) to actions (n, *shape of an action)."""
@@ -61,9 +61,9 @@ class Task:
 
     @property
     def scene(self) -> Scene:
-        """What is played on."""
-        scene = self.resolved_kwargs["scene"]
-        return scene if isinstance(scene, Scene) else load_scene(scene)
+        """What is played on; of a game with levels the first of them."""
+        scene: Scene = self.single().unwrapped.scene
+        return scene
 
     @property
     def observation_space(self) -> gym.Space[Any]:

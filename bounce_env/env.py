@@ -174,6 +174,11 @@ class BounceEnv(gym.Env[Observation, Any]):
         observation: Observation = self._batch.results.observations[0].copy()
         return observation
 
+    @property
+    def scene(self) -> Scene:
+        """The scene of the present episode."""
+        return self._batch.scene(0)
+
     def close(self) -> None:
         """Close the window, if there is one."""
         if self._window is not None:

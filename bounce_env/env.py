@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-from bounce_env.engine.layout import OUT
+from bounce_env.frames import Frames
 from bounce_env.games.actions import Buttons, Continuous, Discrete
 from bounce_env.games.batch import Batch
 from bounce_env.games.clone import States
@@ -18,16 +18,10 @@ from bounce_env.games.options import PaddleOptions, PinballOptions
 from bounce_env.games.paddle import PaddleGame
 from bounce_env.games.pinball import PinballGame
 from bounce_env.games.start import start_rows
-from bounce_env.render import Picture, Renderer, Window
-from bounce_env.render.projection import Projection
+from bounce_env.render import Picture, Window
 from bounce_env.scene import Scene
 
-Observation = npt.NDArray[np.float32]
-
-
-def observation_space(game: Game) -> spaces.Box:
-    """What an agent sees; the bounds come from the physics, nothing is clipped to them."""
-    return spaces.Box(game.observation_low, game.observation_high, dtype=np.float32)
+Observation = npt.NDArray[np.float32] | npt.NDArray[np.uint8]
 
 
 def action_space(game: Game) -> spaces.Space[Any]:
@@ -46,44 +40,38 @@ def world_seed(generator: np.random.Generator) -> np.uint64:
     return np.uint64(generator.integers(2**64, dtype=np.uint64))
 
 
-def picture_of(batch: Batch, world: int) -> Picture:
-    """What a frame of a world shows."""
-    balls, cores = batch.view(world)
-    elements = len(batch.game.scenes[0].elements)
-    return Picture(
-        balls=balls[:, :2],
-        cores=cores,
-        alive=batch.state.balls["status"][world] != OUT,
-        hits=batch.state.hits[world, :elements],
-        lit=None if batch.memory is None else batch.game.lamps(batch.memory[world]),
-        score=float(batch.episodes[world].score),
-    )
-
-
 class BounceEnv(gym.Env[Observation, Any]):
     """A game as a Gymnasium environment; the games are its subclasses."""
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 30}  # noqa: RUF012 (Gymnasium's)
 
-    def __init__(self, game: Game, render_mode: str | None, width: int | None, height: int | None) -> None:
+    def __init__(
+        self,
+        game: Game,
+        *,
+        obs: Literal["state", "pixels"],
+        render_mode: str | None,
+        width: int | None,
+        height: int | None,
+        trail: float,
+        show_bounces: bool,
+    ) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             allowed = [None, *self.metadata["render_modes"]]
             raise ValueError(f"render_mode = {render_mode!r}: must be one of {allowed}")
-        Projection.fit(game.scenes[0].bounds, width, height)  # a bad size is told now, not at the first frame
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds)}
         self.render_mode = render_mode
-        self.observation_space: spaces.Space[Any] = observation_space(game)
-        self.action_space = action_space(game)
         self._batch = Batch(game, 1, autoreset=DISABLED)
-        self._size = (width, height)
-        self._renderer: Renderer | None = None
+        self._frames = Frames(self._batch, obs=obs, width=width, height=height, trail=trail, show_bounces=show_bounces)
+        self.observation_space: spaces.Space[Any] = self._frames.space
+        self.action_space = action_space(game)
         self._window: Window | None = None
         self._seeded = False
         self._running = False
 
     def __getstate__(self) -> dict[str, Any]:
-        # What draws is made anew when it is needed; windows can be neither copied nor sent.
-        return {**self.__dict__, "_renderer": None, "_window": None}
+        # Windows can be neither copied nor sent.
+        return {**self.__dict__, "_window": None}
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -99,16 +87,18 @@ class BounceEnv(gym.Env[Observation, Any]):
             self._batch.seed(0, world_seed(self.np_random))
             self._seeded = True
         self._batch.reset(np.ones(1, np.bool_), start)
+        self._frames.update((0,))
         self._running = True
         if self.render_mode == "human":
             self.render()
-        return self._batch.results.observations[0].copy(), self._info()
+        return self._observation(), self._info()
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """One step; see the card. Raises ResetNeeded when no episode is running, ValueError for a bad action."""
         if not self._running:
             raise gym.error.ResetNeeded("the episode has ended or not begun: call reset() before step()")
         ended = self._batch.step(np.asarray(action))
+        self._frames.update((0,))
         info = self._info()
         if ended:
             self._running = False
@@ -116,7 +106,7 @@ class BounceEnv(gym.Env[Observation, Any]):
         if self.render_mode == "human":
             self.render()
         r = self._batch.results
-        return r.observations[0].copy(), float(r.rewards[0]), bool(r.terminated[0]), bool(r.truncated[0]), info
+        return self._observation(), float(r.rewards[0]), bool(r.terminated[0]), bool(r.truncated[0]), info
 
     def render(self) -> npt.NDArray[np.uint8] | None:
         """The present frame (height, width, 3) in mode rgb_array; in mode human the same picture in a window."""
@@ -125,16 +115,20 @@ class BounceEnv(gym.Env[Observation, Any]):
             return None
         if not self._seeded:
             raise gym.error.ResetNeeded("call reset() before render()")
-        if self._renderer is None:
-            self._renderer = Renderer(self._batch.game.scenes[0], *self._size)
-        frame = self._renderer.frame(picture_of(self._batch, 0))
+        frame = self._frames.frame(0)
         if self.render_mode == "rgb_array":
             return frame
         if self._window is None:
             title = self.spec.id if self.spec else type(self).__name__
-            self._window = Window((frame.shape[1], frame.shape[0]), title, self.metadata["render_fps"])
+            self._window = Window(self._frames.size, title, self.metadata["render_fps"])
         self._window.show(frame)
         return None
+
+    def picture(self) -> Picture:
+        """What a frame shows now. Raises ResetNeeded before the first reset."""
+        if not self._seeded:
+            raise gym.error.ResetNeeded("call reset() before picture()")
+        return self._frames.picture(0)
 
     def clone_state(self) -> States:
         """All that the present episode and those after it follow from; `restore_state` goes on from it, bit for bit.
@@ -153,14 +147,18 @@ class BounceEnv(gym.Env[Observation, Any]):
         self._batch.restore(state, np.ones(1, np.bool_))
         self._seeded = True
         self._running = int(self._batch.episodes[0].end) == RUNNING
-        observation: Observation = self._batch.results.observations[0].copy()
-        return observation
+        self._frames.restart((0,))
+        return self._observation()
 
     def close(self) -> None:
         """Close the window, if there is one."""
         if self._window is not None:
             self._window.close()
             self._window = None
+
+    def _observation(self) -> Observation:
+        observation: Observation = self._frames.observations[0].copy()
+        return observation
 
     def _info(self) -> dict[str, Any]:
         episode = self._batch.episodes[0]
@@ -224,9 +222,12 @@ class PaddleEnv(BounceEnv):
         frame_skip: int = 2,
         repeat_action_probability: float = 0.0,
         time_limit: float | None = 60.0,
+        obs: Literal["state", "pixels"] = "state",
         render_mode: str | None = None,
         width: int | None = None,
         height: int | None = None,
+        trail: float = 0.0,
+        show_bounces: bool = False,
     ) -> None:
         options = PaddleOptions(
             scene=scene,
@@ -235,7 +236,15 @@ class PaddleEnv(BounceEnv):
             repeat_action_probability=repeat_action_probability,
             time_limit=time_limit,
         )
-        super().__init__(PaddleGame(options), render_mode, width, height)
+        super().__init__(
+            PaddleGame(options),
+            obs=obs,
+            render_mode=render_mode,
+            width=width,
+            height=height,
+            trail=trail,
+            show_bounces=show_bounces,
+        )
 
 
 class PinballEnv(BounceEnv):
@@ -324,9 +333,12 @@ class PinballEnv(BounceEnv):
         frame_skip: int = 2,
         repeat_action_probability: float = 0.0,
         time_limit: float | None = 120.0,
+        obs: Literal["state", "pixels"] = "state",
         render_mode: str | None = None,
         width: int | None = None,
         height: int | None = None,
+        trail: float = 0.0,
+        show_bounces: bool = False,
     ) -> None:
         options = PinballOptions(
             scene=scene,
@@ -337,4 +349,12 @@ class PinballEnv(BounceEnv):
             repeat_action_probability=repeat_action_probability,
             time_limit=time_limit,
         )
-        super().__init__(PinballGame(options), render_mode, width, height)
+        super().__init__(
+            PinballGame(options),
+            obs=obs,
+            render_mode=render_mode,
+            width=width,
+            height=height,
+            trail=trail,
+            show_bounces=show_bounces,
+        )

@@ -62,17 +62,21 @@ class Sprite:
 
     def draw(self, target: pygame.Surface, x: float, y: float) -> None:
         """Draw it with its (0, 0) at the pixel coordinates (x, y)."""
+        image, (left, top) = self.image_at(x, y)
+        width, height = target.get_size()
+        # pygame takes places modulo 2^32, and would draw what lies very far outside
+        if -self._area.width < left < width and -self._area.height < top < height:
+            _stamp(target, image, (left, top))
+
+    def image_at(self, x: float, y: float) -> tuple[pygame.Surface, tuple[int, int]]:
+        """What it looks like with its (0, 0) at (x, y), colours multiplied by their opacity, and left and top of it."""
         column, right = divmod(round(x * FINENESS), FINENESS)
         row, down = divmod(round(y * FINENESS), FINENESS)
-        left, top = self._area.left + column, self._area.top + row
-        width, height = target.get_size()
-        if not (-self._area.width < left < width and -self._area.height < top < height):
-            return  # pygame takes places modulo 2^32, and would draw what lies very far outside
         image = self._images.get((right, down))
         if image is None:
             moved = [_moved(shape, right / FINENESS, down / FINENESS) for shape in self._look]
             image = self._images[right, down] = _rasterised(moved, self._area)
-        _stamp(target, image, (left, top))
+        return image, (self._area.left + column, self._area.top + row)
 
 
 class Turned:

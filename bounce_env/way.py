@@ -29,8 +29,11 @@ class Flight(NamedTuple):
     @classmethod
     def of(cls, ball: Any) -> "Flight":
         """The present flight of a ball (a row of `State.balls`); a drained one stays where it is."""
-        speeds = (0.0, 0.0, 0.0, 0.0) if ball.status == OUT else (ball.vx, ball.vy, ball.ax, ball.ay)
-        return cls(*(float(number) for number in (ball.x, ball.y, *speeds, ball.hi + ball.lo)))
+        b = dict(zip(ball.dtype.names, ball.item(), strict=True))
+        begun = b["hi"] + b["lo"]
+        if b["status"] == OUT:
+            return cls(b["x"], b["y"], 0.0, 0.0, 0.0, 0.0, begun)
+        return cls(b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], begun)
 
     def at(self, time: float) -> tuple[float, float]:
         """Where the ball is at an instant."""

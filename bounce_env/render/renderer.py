@@ -24,7 +24,7 @@ class Renderer:
 
     def __init__(self, scene: Scene, width: int | None = None, height: int | None = None) -> None:
         load_pygame()
-        from bounce_env.render import painter, trail  # noqa: PLC0415 (pygame is an extra: only who draws needs it)
+        from bounce_env.render import painter  # noqa: PLC0415 (pygame is an extra: only who draws needs it)
 
         self.projection = Projection.fit(scene.bounds, width, height)
         size = (self.projection.width, self.projection.height)
@@ -45,9 +45,7 @@ class Renderer:
             for i, e in parts.items()
         }
         self._ball = painter.Sprite(ball_look(scene, self.projection))
-        self._trail = trail.Trail(
-            partial(trail_look, scene, self.projection), scene.ball.radius * self.projection.scale
-        )
+        self._trail = painter.Trail(partial(trail_look, scene, self.projection))
         blank = painter.still_picture(*size, [])
         inked = np.abs(self._background.astype(np.int16) - blank).sum(axis=2) > 0
         self._label = painter.Label(*_label_place(scene, self.projection, inked))
@@ -63,7 +61,7 @@ class Renderer:
         alive = _flags("alive", picture.alive, len(balls), missing=True)
         hits = _flags("hits", picture.hits, self._elements, missing=False)
         hits |= _flags("lit", picture.lit, self._elements, missing=False)
-        way = _trail("trail", picture.trail)
+        way = _faded("trail", picture.trail)
         text = None if picture.score is None else _printed(picture.score)
 
         pixels = self._background.copy()
@@ -125,7 +123,7 @@ def _ends(name: str, value: npt.ArrayLike, count: int) -> npt.NDArray[np.float64
     return np.concatenate([_finite(name, rows)[:, :2], rows[:, 2:]])
 
 
-def _trail(name: str, value: npt.ArrayLike | None) -> npt.NDArray[np.float64]:
+def _faded(name: str, value: npt.ArrayLike | None) -> npt.NDArray[np.float64]:
     rows = np.zeros((0, 3)) if value is None else np.asarray(value, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise ValueError(f"{name} has shape {rows.shape}: must be (n, 3), x, y in metres and freshness from 0 to 1")

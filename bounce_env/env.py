@@ -194,6 +194,9 @@ class PaddleEnv(BounceEnv):
     | 4 | paddle: left stop -1, right stop 1 | [-1, 1] |
     | 5 | what the paddle does now, only where actions are sticky | [-1, 1] |
 
+    With `obs="pixels"` the observation is the frame that `render` gives, but for the score: uint8 (height, width, 3), 84
+    x 84 where no size is given. One frame does not tell how fast the ball is: stack some, or ask for a `trail`.
+
     Reward: 1 for each hit of a bumper. Nothing for survival.
 
     Start: the ball at 40 % of the field's height, x uniform over the middle 60 % of its width, 1.5 m/s at 30 to 150
@@ -208,8 +211,10 @@ class PaddleEnv(BounceEnv):
 
     Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; "paddle"), `action`
     ("continuous"), `frame_skip` (2, in units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit`
-    (60.0 s, None for none), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a frame in pixels). A
-    vector env also takes `num_envs`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
+    (60.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height`
+    (of a frame in pixels), `trail` (0.0; seconds of the ball's way, bounces included, that a frame shows, fading),
+    `show_bounces` (False; whether `render` shows, after a step with bounces, the last of them in place of the step's
+    end). A vector env also takes `num_envs`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
 
     Versions: v0, first release.
     """
@@ -297,6 +302,10 @@ class PinballEnv(BounceEnv):
     | tilt meter over 3, 1: tilted; time until the next nudge over 0.25 s; only with `nudge` | [0, 1] |
     | each button that is in force, only where actions are sticky | {0, 1} |
 
+    With `obs="pixels"` the observation is the frame that `render` gives, but for the score: uint8 (height, width, 3), 84
+    x 84 where no size is given. One frame does not tell how fast the ball is (stack some, or ask for a `trail`), and none
+    tells what else only a clock or a counter knows: what is left of time limits, cooldowns and multiplier.
+
     Reward: points / 1000, and -0.5 for every ball that is lost.
 
     Start: the ball in the lane, shot at 1.45 to 2.4 m/s as the episode's seed says for each one. A step in which a ball
@@ -316,8 +325,10 @@ class PinballEnv(BounceEnv):
 
     Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; "pinball", whose file says what a
     table must have), `action` ("discrete"), `nudge` (False), `balls` (3), `frame_skip` (2, in units of 1/60 s),
-    `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (120.0 s, None for none), `render_mode` (None,
-    "rgb_array", "human"), `width`, `height` (of a frame in pixels). A vector env also takes `num_envs`, `num_threads`
+    `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state", "pixels"),
+    `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a frame in pixels), `trail` (0.0; seconds of the
+    ball's way, bounces included, that a frame shows, fading), `show_bounces` (False; whether `render` shows, after a
+    step with bounces, the last of them in place of the step's end). A vector env also takes `num_envs`, `num_threads`
     (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
 
     Versions: v0, first release.

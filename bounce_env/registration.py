@@ -19,12 +19,12 @@ class Entry:
 ENTRIES = (
     Entry(
         "Bounce/Pinball-v0",
-        entry_point="bounce_env.env:PinballEnv",
+        entry_point="bounce_env.cards:PinballEnv",
         vector_entry_point="bounce_env.vector:PinballVectorEnv",
     ),
     Entry(
         "Bounce/Paddle-v0",
-        entry_point="bounce_env.env:PaddleEnv",
+        entry_point="bounce_env.cards:PaddleEnv",
         vector_entry_point="bounce_env.vector:PaddleVectorEnv",
     ),
 )

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import gymnasium as gym
 import numpy as np
@@ -11,15 +11,9 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from bounce_env.env import (
-    PaddleEnv,
-    PinballEnv,
-    action_space,
-    observation_space,
-    picture_of,
-    taken_snapshot,
-    world_seed,
-)
+from bounce_env.cards import PaddleEnv, PinballEnv
+from bounce_env.env import action_space, taken_snapshot, world_seed
+from bounce_env.frames import Frames
 from bounce_env.games import episode
 from bounce_env.games.batch import Batch
 from bounce_env.games.clone import States
@@ -28,10 +22,9 @@ from bounce_env.games.options import Options, PaddleOptions, PinballOptions
 from bounce_env.games.paddle import PaddleGame
 from bounce_env.games.pinball import PinballGame
 from bounce_env.games.start import start_rows
-from bounce_env.render import Renderer
-from bounce_env.render.projection import Projection
+from bounce_env.render import Picture
 
-Observations = npt.NDArray[np.float32]
+Observations = npt.NDArray[np.float32] | npt.NDArray[np.uint8]
 Flags = npt.NDArray[np.bool_]
 
 _AUTORESET = {
@@ -64,9 +57,12 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         num_threads: int = 1,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         copy: bool = True,
+        obs: Literal["state", "pixels"] = "state",
         render_mode: str | None = None,
         width: int | None = None,
         height: int | None = None,
+        trail: float = 0.0,
+        show_bounces: bool = False,
         **options: Any,
     ) -> None:
         for name, value in (("num_envs", num_envs), ("num_threads", num_threads)):
@@ -84,28 +80,26 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         if unknown:
             raise TypeError(f"{type(self).__name__} got unexpected keyword arguments: {', '.join(unknown)}")
         game = self.game_type(self.options_type(**options)).with_step_limit(steps)
-        Projection.fit(game.scenes[0].bounds, width, height)  # a bad size is told now, not at the first frame
         mode = _autoreset_mode(autoreset_mode)
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds), "autoreset_mode": mode}
         self.num_envs = int(num_envs)
         self.render_mode = render_mode
-        self.single_observation_space = observation_space(game)
+        # A frame of an episode's end is drawn before the world is reset: not by the kernel then, but after that.
+        self._resets_late = obs == "pixels" and mode == AutoresetMode.SAME_STEP
+        autoreset = episode.DISABLED if self._resets_late else _AUTORESET[mode]
+        self._batch = Batch(game, self.num_envs, autoreset=autoreset, num_threads=int(num_threads))
+        self._frames = Frames(self._batch, obs=obs, width=width, height=height, trail=trail, show_bounces=show_bounces)
+        self.single_observation_space = self._frames.space
         self.single_action_space = action_space(game)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._mode = mode
         self._copy = copy
-        self._size = (width, height)
-        self._batch = Batch(game, self.num_envs, autoreset=_AUTORESET[mode], num_threads=int(num_threads))
-        self._renderer: Renderer | None = None
         self._seeded = np.zeros(self.num_envs, np.bool_)
         self._begun = False
         self._every = np.ones(self.num_envs, np.bool_)
         self._every.flags.writeable = False
         self._ended = np.ones(self.num_envs, np.bool_)
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_renderer": None}
 
     def reset(
         self,
@@ -126,6 +120,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         start = start_rows(self._batch.game, self.num_envs, options)
         self._seed_worlds(seed, mask)
         self._batch.reset(mask, start)
+        self._frames.update(np.flatnonzero(mask).tolist())
         self._ended[mask] = False
         return self._observations(), self._info(mask)
 
@@ -140,12 +135,19 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             raise gym.error.ResetNeeded("call reset() before step()")
         ended = self._batch.step(np.asarray(actions))
         r = self._batch.results
+        rewards, terminated, truncated = r.rewards.copy(), r.terminated.copy(), r.truncated.copy()
+        over = terminated | truncated
+        self._frames.update(range(self.num_envs))
+        finals = self._finals(over) if ended and self._mode == AutoresetMode.SAME_STEP else None
+        if ended and self._resets_late:
+            self._batch.reset(over)
+            self._frames.update(np.flatnonzero(over).tolist())
         info = self._info(self._every)
         if ended:
-            self._tell_ends(info, r.terminated | r.truncated)
+            self._tell_ends(info, over, finals)
         if self._mode == AutoresetMode.DISABLED:
-            self._ended = r.terminated | r.truncated
-        return self._observations(), r.rewards.copy(), r.terminated.copy(), r.truncated.copy(), info
+            self._ended = over
+        return self._observations(), rewards, terminated, truncated, info
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
         """One frame (height, width, 3) per world in mode rgb_array."""
@@ -154,9 +156,13 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             return None
         if not self._seeded.all():
             raise gym.error.ResetNeeded("call reset() before render()")
-        if self._renderer is None:
-            self._renderer = Renderer(self._batch.game.scenes[0], *self._size)
-        return tuple(self._renderer.frame(picture_of(self._batch, w)) for w in range(self.num_envs))
+        return tuple(self._frames.frame(w) for w in range(self.num_envs))
+
+    def picture(self, world: int) -> Picture:
+        """What a frame of a world shows now. Raises ResetNeeded before its first reset."""
+        if not self._seeded[world]:
+            raise gym.error.ResetNeeded("call reset() before picture()")
+        return self._frames.picture(world)
 
     def clone_state(self, mask: Flags | None = None) -> States:
         """What the worlds of `mask` (bool, one per world; None for all) follow from; see the single env's.
@@ -174,6 +180,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         """
         rows = self._mask_of("mask", mask)
         self._batch.restore(states, rows)
+        self._frames.restart(np.flatnonzero(rows).tolist())
         self._seeded |= rows
         self._begun = bool(self._seeded.all())
         self._ended[rows] = self._batch.episodes["end"][rows] != episode.RUNNING
@@ -210,8 +217,16 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         self._begun = bool(self._seeded.all())
 
     def _observations(self) -> Observations:
-        observations = self._batch.results.observations
+        observations = self._frames.observations
         return observations.copy() if self._copy else observations
+
+    def _finals(self, ended: Flags) -> npt.NDArray[Any]:
+        """The last observations of the episodes that have ended, of worlds that are reset in the same step."""
+        seen = self._frames.observations if self._resets_late else self._batch.results.final_observations
+        finals = np.full(self.num_envs, None, object)
+        for w in np.flatnonzero(ended).tolist():
+            finals[w] = seen[w].copy()
+        return finals
 
     def _info(self, mask: Flags) -> dict[str, Any]:
         told = {"score": self._batch.episodes["score"], "ball": self._batch.episodes["ball"]}
@@ -222,12 +237,12 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             info[key], info[f"_{key}"] = np.where(mask, values, 0), mask
         return info
 
-    def _tell_ends(self, info: dict[str, Any], ended: Flags) -> None:
+    def _tell_ends(self, info: dict[str, Any], ended: Flags, finals: npt.NDArray[Any] | None) -> None:
         """Add what is said at an episode's end, as Gymnasium's own vector envs do: arrays with masks."""
         told: dict[str, Any] = {}
         for key, values in self._batch.end_info().items():
             told[key], told[f"_{key}"] = values, ended
-        if self._mode != AutoresetMode.SAME_STEP:
+        if finals is None:
             info.update(told)
             return
         r = self._batch.results
@@ -235,10 +250,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         told |= {"ball": r.ended["ball"].copy(), "_ball": ended}
         if self._batch.game.has_levels:
             told |= {"level": r.ended["level"].copy(), "_level": ended}
-        observations = np.full(self.num_envs, None, object)
-        for w in np.flatnonzero(ended).tolist():
-            observations[w] = r.final_observations[w].copy()
-        info.update(final_obs=observations, _final_obs=ended, final_info=told, _final_info=ended)
+        info.update(final_obs=finals, _final_obs=ended, final_info=told, _final_info=ended)
 
 
 def _whole(value: Any) -> bool:

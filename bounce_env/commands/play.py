@@ -1,6 +1,9 @@
 """`play`."""
 
+import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +21,7 @@ from bounce_env.registration import ENTRIES
 from bounce_env.render.lazy_pygame import load_pygame
 
 HEIGHT = 720
+PATIENCE = 4.0  # seconds: twice what it takes to load kernels from disk
 LARGEST_SEED = 2**32 - 1
 
 
@@ -27,14 +31,15 @@ def play_game(options: Play) -> int:
     env = _made(env_id, options)
     short = _short(env_id)
     seed = int(np.random.SeedSequence().generate_state(1)[0]) if options.seed is None else options.seed
-    say(f"{env_id}, launches of seed {seed}; where it is played for the first time, half a minute to compile")
+    say(f"{env_id}, launches of seed {seed}")
     fps = float(env.metadata["render_fps"])
 
     def film() -> Film:
         height, width, _ = session.frame.shape
         return Film(_unused(options.films, f"{short}-{time.strftime('%Y%m%d-%H%M%S')}"), (width, height), fps)
 
-    prepare(env)
+    with _said_if_slow("compiling, about a minute: only where it is played for the first time"):
+        prepare(env)
     session = Session(env, seed, film)
     try:
         play(session, env_id, fps, options.frames)
@@ -46,6 +51,17 @@ def play_game(options: Play) -> int:
     if session.message:
         say(session.message)
     return FINE
+
+
+@contextmanager
+def _said_if_slow(words: str) -> Iterator[None]:
+    """Say why it takes long, where it does: whether all kernels are on disk is not known before they are loaded."""
+    timer = threading.Timer(PATIENCE, say, [words])
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def game_id(name: str) -> str:

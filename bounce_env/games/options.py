@@ -15,7 +15,7 @@ CONFIG = ConfigDict(arbitrary_types_allowed=True)
 
 @dataclass(frozen=True, kw_only=True, config=CONFIG)
 class Options:
-    """What all games have in common; see the cards in `bounce_env.env`. Raises ValueError for what is not allowed."""
+    """What all games have in common; see the cards in `bounce_env.cards`. Raises ValueError for what is not allowed."""
 
     scene: str | PathLike[str] | InstanceOf[Scene] | None = None
     frame_skip: Annotated[StrictInt, Field(ge=1, le=FPS)] = 2

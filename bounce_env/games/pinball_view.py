@@ -1,4 +1,4 @@
-"""What a player of pinball sees: see the card of `bounce_env.env.PinballEnv`."""
+"""What a player of pinball sees: see the card of `bounce_env.cards.PinballEnv`."""
 
 from typing import Any
 
@@ -26,7 +26,7 @@ REFERENCE_SPEED = 1.0  # m/s; the speed that is observed as 1
 
 @function
 def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
-    """What the card of `bounce_env.env.PinballEnv` says, in its order."""
+    """What the card of `bounce_env.cards.PinballEnv` says, in its order."""
     state, layout = worlds.state, rules.layout
     memory, episode, world = worlds.memory[w], worlds.episodes[w], state.worlds[w]
     scene = world.scene

@@ -28,6 +28,8 @@ _SENSOR, _SENSOR_LIT = (74, 148, 120, 255), (150, 255, 200, 255)
 _WIND, _WIND_ARROW = (96, 104, 232, 34), (116, 126, 236, 120)
 _WIND_LIT, _WIND_ARROW_LIT = (120, 140, 255, 90), (190, 200, 255, 220)
 _BALL = (255, 252, 240, 255)
+_TRAIL = (255, 214, 150)
+_TRAIL_PEAK = 190  # opacity where it is freshest
 
 _SMALLEST_RADIUS = 1.5
 """Pixels: what is smaller in the scene is still drawn as a dot that one can see."""
@@ -69,6 +71,14 @@ def ball_look(scene: Scene, projection: Projection) -> Look:
     radius = max(scene.ball.radius * projection.scale, _SMALLEST_RADIUS, _pen(projection))
     center = (0.0, 0.0)
     return (*_glow(center, center, radius, 0.8 * radius, _BALL, 70), Stroke(center, center, radius, _BALL))
+
+
+def trail_look(scene: Scene, projection: Projection, freshness: float) -> Look:
+    """A spot at the pixel coordinates (0, 0) of the way that a ball has come: fainter and smaller, the older it is."""
+    spot = 0.6 * max(scene.ball.radius * projection.scale, _SMALLEST_RADIUS, _pen(projection))
+    radius = max(spot * (0.35 + 0.65 * freshness), 0.5)
+    center = (0.0, 0.0)
+    return (Stroke(center, center, radius, (*_TRAIL, round(_TRAIL_PEAK * freshness))),)
 
 
 def part_look(part: Part, way: Point, scene: Scene, projection: Projection, *, lit: bool) -> Look:

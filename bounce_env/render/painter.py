@@ -11,12 +11,19 @@ import pygame
 from bounce_env.render.looks import FIELD_BOTTOM, FIELD_TOP, TEXT, TEXT_SHADOW, Look, Patch, Point, Stroke
 
 Pixels = npt.NDArray[np.uint8]
+Floats = npt.NDArray[np.float64]
 
 FINENESS = 8
 """Strokes are drawn this many times larger and scaled down, and a moving thing is placed to 1/FINENESS pixel."""
 
 _MOST_TURNED = 256
 """Vectors for which a look is kept; a wall that is dragged never shows the same one for long."""
+
+_SHADES = 32
+"""How many degrees of freshness of a trail are told apart."""
+
+_SCALLOP = 0.08
+"""The spots of a trail lie so close that its border is wavy by no more pixels than this."""
 
 _BAND = 64
 """Rows of a look that are drawn at a time, so that a large one needs little memory for its FINENESS."""
@@ -88,6 +95,44 @@ class Turned:
         """Draw it with its (0, 0) at `start`, for the vector from there to `end`, pixel coordinates."""
         way = (round((end[0] - start[0]) * FINENESS), round((end[1] - start[1]) * FINENESS))
         self._sprite_of(*way).draw(target, *start)
+
+
+class Trail:
+    """A line that fades along its way: spots so near to each other that they cannot be told apart.
+
+    spot_of: from a freshness, 0 to 1, to what a spot looks like about (0, 0); the freshest one is the largest.
+    """
+
+    def __init__(self, spot_of: Callable[[float], Look]) -> None:
+        self._spot_of = spot_of
+        self._area = _area_of(spot_of(1.0)).inflate(2, 2)
+        self._spacing = max(1.0, math.sqrt(4 * self._area.width * _SCALLOP))
+        self._image = lru_cache(None)(self._drawn)
+
+    def draw(self, target: pygame.Surface, path: Floats, freshness: Floats) -> None:
+        """Draw it along `path` (n, 2), pixel coordinates, n >= 1, each point as fresh as `freshness` (n,) says.
+
+        Spots do not add up: where they overlap the brighter one is seen.
+        """
+        spots, fresh = _spots(path, freshness, self._spacing)
+        shades = np.rint(fresh * _SHADES)
+        seen = (shades > 0) & (spots > -self._area.width).all(axis=1)
+        seen &= (spots < np.add(target.get_size(), self._area.width)).all(axis=1)
+        places, fractions = np.divmod(np.rint(spots[seen] * FINENESS).astype(int), FINENESS)
+        images = map(self._image, shades[seen].tolist(), *fractions.T.tolist())
+        target.fblits(zip(images, (places + self._area.topleft).tolist(), strict=True), pygame.BLEND_RGB_MAX)
+
+    def _drawn(self, shade: float, right: int, down: int) -> pygame.Surface:
+        look = self._spot_of(shade / _SHADES)
+        return _rasterised([_moved(shape, right / FINENESS, down / FINENESS) for shape in look], self._area)
+
+
+def _spots(path: Floats, freshness: Floats, spacing: float) -> tuple[Floats, Floats]:
+    """Points every `spacing` pixels along a path, back from its end, and how fresh each is."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    places = np.arange(along[-1], -1e-9, -spacing)
+    x, y, fresh = (np.interp(places, along, values) for values in (*path.T, freshness))
+    return np.stack([x, y], axis=1), fresh
 
 
 class Label:

@@ -14,6 +14,8 @@ class Picture:
     None for all. hits: how often each element was struck since the last frame, shape (len(scene.elements),): what was
     struck lights up; None for nothing. lit: which elements are lit as lamps are, of the same shape; None for none.
     score: printed at the top; None for no text.
+    trail: the way that a ball has come, shape (n, 3): x, y [m], and how fresh each point is, from 0, which has faded
+    out, to 1, oldest first; None for none.
     """
 
     balls: npt.ArrayLike
@@ -22,3 +24,4 @@ class Picture:
     hits: npt.ArrayLike | None = None
     lit: npt.ArrayLike | None = None
     score: float | None = None
+    trail: npt.ArrayLike | None = None

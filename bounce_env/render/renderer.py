@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.render.lazy_pygame import load_pygame
-from bounce_env.render.looks import ball_look, part_look, rail_look, still_look
+from bounce_env.render.looks import ball_look, part_look, rail_look, still_look, trail_look
 from bounce_env.render.picture import Picture
 from bounce_env.render.projection import Projection
 from bounce_env.scene import Field, Scene, Sensor
@@ -45,6 +45,7 @@ class Renderer:
             for i, e in parts.items()
         }
         self._ball = painter.Sprite(ball_look(scene, self.projection))
+        self._trail = painter.Trail(partial(trail_look, scene, self.projection))
         blank = painter.still_picture(*size, [])
         inked = np.abs(self._background.astype(np.int16) - blank).sum(axis=2) > 0
         self._label = painter.Label(*_label_place(scene, self.projection, inked))
@@ -60,6 +61,7 @@ class Renderer:
         alive = _flags("alive", picture.alive, len(balls), missing=True)
         hits = _flags("hits", picture.hits, self._elements, missing=False)
         hits |= _flags("lit", picture.lit, self._elements, missing=False)
+        way = _faded("trail", picture.trail)
         text = None if picture.score is None else _printed(picture.score)
 
         pixels = self._background.copy()
@@ -69,6 +71,8 @@ class Renderer:
                 self._flashes[i].draw(target)
         if text is not None:
             self._label.draw(target, text)
+        if len(way):
+            self._trail.draw(target, self.projection.to_pixels(way[:, :2]), way[:, 2])
         for (i, (calm, lit)), start, end in zip(self._parts.items(), *cores.reshape(2, -1, 2).tolist(), strict=True):
             (lit if hits[i] else calm).draw(target, start, end)
         for x, y in balls[alive].tolist():
@@ -117,6 +121,15 @@ def _ends(name: str, value: npt.ArrayLike, count: int) -> npt.NDArray[np.float64
     if rows.shape != (count, 4):
         raise ValueError(f"{name} has shape {rows.shape}: must be ({count}, 4), x, y, x, y in metres")
     return np.concatenate([_finite(name, rows)[:, :2], rows[:, 2:]])
+
+
+def _faded(name: str, value: npt.ArrayLike | None) -> npt.NDArray[np.float64]:
+    rows = np.zeros((0, 3)) if value is None else np.asarray(value, dtype=np.float64)
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise ValueError(f"{name} has shape {rows.shape}: must be (n, 3), x, y in metres and freshness from 0 to 1")
+    if not ((rows[:, 2] >= 0.0) & (rows[:, 2] <= 1.0)).all():
+        raise ValueError(f"{name} = {rows.tolist()}: freshness must be from 0 to 1")
+    return _finite(name, rows)
 
 
 def _finite(name: str, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from rollouts import PADDLE, assert_same, make_vec
 
-from bounce_env.env import PaddleEnv
+from bounce_env.cards import PaddleEnv
 from bounce_env.vector import PaddleVectorEnv
 
 NAN, INF = float("nan"), float("inf")
@@ -32,6 +32,15 @@ GAME_KWARGS = [
     ("width", 0, ["an integer from 1 to"]),
     ("height", -3, ["an integer from 1 to"]),
     ("height", 1.5, ["an integer from 1 to"]),
+    ("obs", "frames", ["state, pixels"]),
+    ("obs", None, ["state, pixels"]),
+    ("trail", -0.1, ["finite number >= 0"]),
+    ("trail", NAN, ["finite number >= 0"]),
+    ("trail", INF, ["finite number >= 0"]),
+    ("trail", True, ["finite number >= 0"]),
+    ("trail", None, ["finite number >= 0"]),
+    ("trail", "0.5", ["finite number >= 0"]),
+    ("show_bounces", 1, ["True or False"]),
 ]
 VECTOR_KWARGS = [
     ("num_envs", 0, [">= 1"]),

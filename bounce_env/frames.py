@@ -1,0 +1,168 @@
+"""What is seen of a batch: observations, be they states or pixels, and pictures and frames of its worlds."""
+
+import math
+from collections.abc import Iterable
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from bounce_env.engine.layout import OUT, Array, State
+from bounce_env.engine.view import view
+from bounce_env.games.batch import Batch
+from bounce_env.render import Picture, Renderer
+from bounce_env.render.projection import Projection
+from bounce_env.way import Flight, Way
+
+Pixels = npt.NDArray[np.uint8]
+
+OBS = ("state", "pixels")
+
+OBSERVED_SIZE = 84
+"""Width and height of observed frames for which no size was asked, pixels: as agents for Atari games see."""
+
+_MOST_LEVELS = 256
+"""Levels of which renderers are kept."""
+
+
+class Frames:
+    """What the worlds of a batch look like.
+
+    obs: "state" or "pixels", what an agent is given. width, height: of frames in pixels; see `Projection.fit` for what
+    is left out. trail: seconds of the ball's way that are drawn. show_bounces: whether a frame shows the last bounce of
+    its step in place of the step's end. Raises ValueError for what is not allowed.
+
+    Every reset and step is told by `update`. size: (width, height) of a frame, pixels.
+    """
+
+    def __init__(
+        self,
+        batch: Batch,
+        *,
+        obs: Literal["state", "pixels"],
+        width: int | None,
+        height: int | None,
+        trail: float,
+        show_bounces: bool,
+    ) -> None:
+        if obs not in OBS:
+            raise ValueError(f"obs = {obs!r}: must be one of {', '.join(OBS)}")
+        if isinstance(trail, bool) or not isinstance(trail, int | float) or not 0.0 <= trail < math.inf:
+            raise ValueError(f"trail = {trail!r}: must be a finite number >= 0 (seconds)")
+        if not isinstance(show_bounces, bool):
+            raise ValueError(f"show_bounces = {show_bounces!r}: must be True or False")
+        if obs == "pixels" and width is None and height is None:
+            width = height = OBSERVED_SIZE
+        fit = Projection.fit(batch.game.scenes[0].bounds, width, height)
+        self.size = (fit.width, fit.height)
+        self._pixels: Pixels | None = None
+        if obs == "pixels":
+            self._pixels = np.zeros((batch.worlds, fit.height, fit.width, 3), np.uint8)
+        self._batch = batch
+        self._trail = float(trail)
+        self._show_bounces = show_bounces
+        self._ways = [Way(self._trail) for _ in range(batch.worlds)] if trail > 0 else []
+        self._renderers: dict[int, Renderer] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What draws is made anew when it is needed; surfaces can be neither copied nor sent.
+        return {**self.__dict__, "_renderers": {}}
+
+    @property
+    def space(self) -> spaces.Box:
+        """Of one world's observation; the bounds of a state come from the physics, nothing is clipped to them."""
+        game = self._batch.game
+        if self._pixels is None:
+            return spaces.Box(game.observation_low, game.observation_high, dtype=np.float32)
+        return spaces.Box(0, 255, self._pixels.shape[1:], np.uint8)
+
+    @property
+    def observations(self) -> Array:
+        """What agents see now: (worlds, size) float32, or (worlds, height, width, 3) uint8; overwritten by `update`."""
+        return self._batch.results.observations if self._pixels is None else self._pixels
+
+    def update(self, worlds: Iterable[int]) -> None:
+        """Some worlds have been reset or stepped: their balls have gone on, and their observations are drawn anew."""
+        if not self._ways and self._pixels is None:
+            return
+        for w in worlds:
+            if self._ways:
+                self._go_on(w)
+            if self._pixels is not None:
+                self._pixels[w] = self._drawn(w, self._picture(w, at_bounce=False, score=False))
+
+    def restart(self, worlds: Iterable[int]) -> None:
+        """Some worlds go on from another state: what is known of the ways that their balls have come is not theirs."""
+        worlds = list(worlds)
+        if self._ways:
+            for w in worlds:
+                self._ways[w] = Way(self._trail)
+        self.update(worlds)
+
+    def picture(self, world: int) -> Picture:
+        """What a frame of a world shows."""
+        return self._picture(world, at_bounce=self._show_bounces, score=True)
+
+    def frame(self, world: int) -> Pixels:
+        """A new picture of a world, (height, width, 3)."""
+        return self._drawn(world, self.picture(world))
+
+    def _drawn(self, world: int, picture: Picture) -> Pixels:
+        level = int(self._batch.episodes["level"][world])
+        renderer = self._renderers.get(level)
+        if renderer is None:
+            while len(self._renderers) >= _MOST_LEVELS:
+                del self._renderers[next(iter(self._renderers))]
+            renderer = self._renderers[level] = Renderer(self._batch.scene(world), *self.size)
+        return renderer.frame(picture)
+
+    def _go_on(self, w: int) -> None:
+        world, episode, game = self._batch.state.worlds[w], self._batch.episodes[w], self._batch.game
+        ball = (int(episode.seed), int(episode.episodes), int(episode.ball))
+        # A step lasts longer where a ball has been served in it: the one that is seen now came from there.
+        longest = game.step_seconds * 1.001
+        flight = Flight.of(self._batch.state.balls[w, 0])
+        self._ways[w].go_on(ball, flight, float(world.time_hi + world.time_lo), longest)
+
+    def _picture(self, w: int, *, at_bounce: bool, score: bool) -> Picture:
+        batch = self._batch
+        scene = batch.game.scenes[0]  # the scenes of all levels have as many parts and elements
+        shown, row = batch.state, w
+        if at_bounce and _has_bounced(shown, w):
+            shown, row = _at_flight_start(shown, w), 0
+        balls, cores = np.empty((shown.balls.shape[1], 4)), np.empty((len(scene.parts), 4))
+        view(shown, batch.tables, row, balls, cores)
+        world = shown.worlds[row]
+        return Picture(
+            balls=balls[:, :2],
+            cores=cores,
+            alive=shown.balls["status"][row] != OUT,
+            hits=shown.hits[row, : len(scene.elements)],
+            lit=None if batch.memory is None else batch.game.lamps(batch.memory[w]),
+            score=float(batch.episodes[w].score) if score else None,
+            trail=self._ways[w].until(float(world.time_hi + world.time_lo)) if self._ways else None,
+        )
+
+
+def _has_bounced(state: State, w: int) -> bool:
+    """Whether the ball's present flight begins at a bounce in the last step: on something that was hit in it."""
+    ball = state.balls[w, 0]
+    touched = state.touches["element"][w, : ball.touched]
+    return bool(ball.status != OUT and (state.hits[w, touched] > 0).any())
+
+
+def _at_flight_start(state: State, w: int) -> State:
+    """One world's state for `view` alone, at the instant at which its ball's present flight began."""
+    rows: list[Any] = [None if table is None else table[w : w + 1].copy() for table in state]
+    one = State(*rows)
+    ball, world = one.balls[0, 0], one.worlds[0]
+    world.time_hi, world.time_lo = ball.hi, ball.lo
+    if one.motions is not None:
+        # A part that has come to a stop since then was still on its way, as commanded.
+        late = (one.motions["hi"] + one.motions["lo"] > ball.hi + ball.lo) & (one.motions["velocity"] == 0.0)
+        one.motions["velocity"][late] = one.motions["command"][late]
+        if one.ends is not None:
+            for name in ("x0", "y0", "x1", "y1"):
+                one.ends[f"v{name}"][late] = one.ends[f"c{name}"][late]
+    return one

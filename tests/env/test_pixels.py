@@ -1,0 +1,187 @@
+"""Observations that are frames: obs="pixels" in single, vector and SB3's environments."""
+
+import copy
+import pickle
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from rollouts import MODES, PADDLE, PINBALL, assert_same, make_sync, make_vec, scripted
+from stable_baselines3 import PPO
+from stable_baselines3.common.env_checker import check_env as sb3_check_env
+
+from bounce_env.registration import ENTRIES
+from bounce_env.sb3 import BounceVecEnv
+
+PIXELS = {"obs": "pixels", "height": 40}
+IDS = [entry.id for entry in ENTRIES]
+
+
+def scripted_for(envs, steps):
+    space = gym.vector.utils.batch_space(envs.action_space, envs.num_envs)
+    return scripted(space, steps)
+
+
+@pytest.mark.parametrize("env_id", IDS)
+def test_an_observation_is_a_frame_of_84_by_84_unless_a_size_is_asked(env_id):
+    env = gym.make(env_id, obs="pixels")
+    assert env.observation_space == gym.spaces.Box(0, 255, (84, 84, 3), np.uint8)
+    observation, _ = env.reset(seed=0)
+    assert observation in env.observation_space
+    assert gym.make(env_id, obs="pixels", width=30, height=50).observation_space.shape == (50, 30, 3)
+    wide = gym.make(env_id, obs="pixels", width=50).observation_space.shape
+    assert wide == gym.make(env_id, render_mode="rgb_array", width=50, obs="pixels").observation_space.shape
+    assert wide[1] == 50
+    assert wide[0] >= 50  # as high as the table's shape asks
+
+
+@pytest.mark.parametrize("env_id", IDS)
+@pytest.mark.filterwarnings("ignore:.*render")
+def test_the_checkers_of_gymnasium_and_sb3_find_nothing(env_id):
+    check_env(gym.make(env_id, **PIXELS, render_mode="rgb_array", disable_env_checker=True).unwrapped)
+    sb3_check_env(gym.make(env_id, obs="pixels"))
+
+
+@pytest.mark.parametrize("env_id", IDS)
+def test_the_play_is_that_of_the_state(env_id):
+    """The same seeds, rewards, ends and infos: only what is seen differs."""
+    pixels, states = gym.make(env_id, **PIXELS, time_limit=3.0), gym.make(env_id, time_limit=3.0)
+    pixels.action_space.seed(0)
+    assert_same(pixels.reset(seed=3)[1], states.reset(seed=3)[1])
+    ends = 0
+    for _ in range(200):
+        action = pixels.action_space.sample()
+        seen, known = pixels.step(action), states.step(action)
+        assert_same(seen[1:], known[1:])
+        if seen[2] or seen[3]:
+            ends += 1
+            assert_same(pixels.reset()[1], states.reset()[1])
+    assert ends > 1
+
+
+def test_an_observation_is_what_render_gives_but_for_the_score():
+    env = gym.make(PADDLE, obs="pixels", render_mode="rgb_array", height=200)
+    env.reset(seed=0, options={"position": (0.5, 0.6), "velocity": (0.0, 1.5)})
+    for _ in range(4):
+        observation, *_, info = env.step([0.0])
+        changed = (observation != env.render()).any(axis=2)
+        assert 0 < changed.sum() < 0.02 * changed.size  # the text
+        assert not changed[100:].any()
+    assert info["score"] == 1.0
+
+
+@pytest.mark.parametrize("env_id", IDS)
+@pytest.mark.parametrize("mode", MODES)
+def test_a_batch_sees_what_single_environments_see(env_id, mode):
+    """Frames, final frames of episodes that are over, infos and ends: all as Gymnasium's own vector env has them."""
+    kwargs = {**PIXELS, "time_limit": 2.0, "trail": 0.2}
+    ours, theirs = make_vec(3, mode, env_id, **kwargs), make_sync(3, mode, env_id, **kwargs)
+    assert_same(ours.reset(seed=7), theirs.reset(seed=7))
+    assert ours.observation_space == theirs.observation_space
+    ends = 0
+    for actions in scripted(ours.action_space, 100):
+        result = ours.step(actions)
+        assert_same(result, theirs.step(actions))
+        over = result[2] | result[3]
+        ends += int(over.sum())
+        if mode == "DISABLED" and over.any():
+            options = {"reset_mask": over}
+            assert_same(ours.reset(options=options), theirs.reset(options=dict(options)))
+    assert ends > 3
+
+
+def test_the_final_frame_is_of_the_end_and_the_observation_of_the_next_start():
+    envs = make_vec(2, "SAME_STEP", **PIXELS)
+    single = gym.make(PADDLE, **PIXELS)
+    envs.reset(seed=1), single.reset(seed=1)
+    ended = np.zeros(2, bool)
+    while not ended[0]:
+        observations, _, terminated, truncated, info = envs.step(np.zeros((2, 1)))
+        last, *_ = single.step([0.0])
+        ended = terminated | truncated
+    assert_same(info["final_obs"][0], last)
+    assert_same(observations[0], single.reset()[0])
+    assert not np.array_equal(observations[0], last)
+
+
+def test_sb3_gets_the_last_frame_of_an_episode():
+    pixels = BounceVecEnv(PADDLE, 3, seed=2, **PIXELS)
+    states = BounceVecEnv(PADDLE, 3, seed=2)
+    single = [gym.make(PADDLE, **PIXELS) for _ in range(3)]
+    frames, _ = pixels.reset(), states.reset()
+    assert frames.dtype == np.uint8
+    last = [env.reset(seed=2 + i)[0] for i, env in enumerate(single)]
+    assert_same(frames, np.stack(last))
+    ends = 0
+    for actions in scripted_for(pixels, 120):
+        frames, rewards, dones, infos = pixels.step(actions)
+        _, expected, ended, known = states.step(actions)
+        assert_same((rewards, dones), (expected, ended))
+        for w, env in enumerate(single):
+            last[w], *_ = env.step(actions[w])
+            if dones[w]:
+                assert_same(infos[w].pop("terminal_observation"), last[w])
+                known[w].pop("terminal_observation")
+                last[w], _ = env.reset()
+                ends += 1
+            assert_same(infos[w], known[w])
+        assert_same(frames, np.stack(last))
+    assert ends > 3
+
+
+def test_a_convolutional_policy_takes_it():
+    envs = BounceVecEnv(PINBALL, 2, obs="pixels", seed=0)
+    model = PPO("CnnPolicy", envs, n_steps=4, batch_size=8, n_epochs=1, seed=0, device="cpu")
+    model.learn(8)
+    assert model.num_timesteps == 8
+
+
+@pytest.mark.parametrize("make", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+def test_copies_go_on_and_see_the_same(make):
+    env = gym.make(PADDLE, **PIXELS, trail=0.3, disable_env_checker=True).unwrapped
+    env.reset(seed=0)
+    for _ in range(10):
+        env.step([0.5])
+    other = make(env)
+    for _ in range(10):
+        assert_same(other.step([0.5]), env.step([0.5]))
+    other.reset()
+    assert not np.array_equal(other._frames.observations, env._frames.observations)
+
+
+def test_a_restored_state_is_seen_without_the_trail_of_another():
+    env = gym.make(PADDLE, **PIXELS, trail=0.3, disable_env_checker=True).unwrapped
+    plain = gym.make(PADDLE, **PIXELS, disable_env_checker=True).unwrapped
+    env.reset(seed=0), plain.reset(seed=0)
+    for _ in range(10):
+        env.step([0.5]), plain.step([0.5])
+    state = env.clone_state()
+    for _ in range(5):
+        env.step([0.5])
+    assert_same(env.restore_state(state), plain._frames.observations[0])
+    envs = make_vec(2, **PIXELS, trail=0.3)
+    envs.reset(seed=4)
+    envs.step(np.zeros((2, 1)))
+    mask = np.array([False, True])
+    before = envs.step(np.zeros((2, 1)))[0]
+    restored = envs.restore_state(state, mask)
+    assert_same(restored[0], before[0])
+    assert_same(restored[1], plain._frames.observations[0])
+
+
+def test_only_worlds_that_have_begun_are_drawn():
+    envs = make_vec(3, **PIXELS)
+    mask = np.array([False, True, False])
+    observations, _ = envs.reset(seed=0, options={"reset_mask": mask})
+    assert [bool(frame.any()) for frame in observations] == mask.tolist()
+
+
+def test_observations_are_the_callers_own_unless_asked():
+    envs, shared = make_vec(2, **PIXELS), make_vec(2, **PIXELS, copy=False)
+    first, _ = envs.reset(seed=0)
+    same, _ = shared.reset(seed=0)
+    kept = first.copy()
+    envs.step(np.ones((2, 1))), shared.step(np.ones((2, 1)))
+    assert_same(first, kept)
+    assert not np.array_equal(same, kept)

@@ -5,7 +5,7 @@ import math
 from bounce_env.engine.disturb import disturb
 from bounce_env.engine.drive import block, end_rides, hold_still, replan_part, resume_part
 from bounce_env.engine.ends import ends_of
-from bounce_env.engine.jit import Table, function, routine
+from bounce_env.engine.jit import Record, Table, function, routine
 from bounce_env.engine.layout import CRUSH, CRUSHED, HELD, OK, State, Tables
 from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.parts import core_at, plan_zones, side_of_part, surface_velocity, turn_of
@@ -55,17 +55,47 @@ def mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w: 
         ball = state.balls[w, k]
         if ball.status != CRUSHED:
             continue
-        x, y, ux, uy, back, front = core_at(part, motion, turn, ends, world.time_hi, world.time_lo)
         side = side_of_part(state.part_sides, w, k, m)
-        nx, ny, distance, nearest = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side, ball.slack)
-        if distance - part.reach > 2.0 * CLEARANCE * tables.scenes[world.scene].extent:
+        gap, closing = _approach(ball, motion, part, turn, ends, side, world.time_hi, world.time_lo)
+        if gap > 2.0 * CLEARANCE * tables.scenes[world.scene].extent:
             continue
-        vx, vy = surface_velocity(motion, part, turn, ends, ux, uy, front, nearest * ux, nearest * uy)
-        closing, rounding = vx * nx + vy * ny, ULPS_OF_SPEED * (abs(vx) + abs(vy))
-        if closing > rounding:
+        if closing > 0.0:
             hold_still(motion, ends, part)
-        elif closing < -rounding:
+        elif closing < 0.0:
             _free(state, tables, motions, parts, w, k, m)
+
+
+@routine
+def meet_crushed(
+    state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, m: int, ledger: Table
+) -> None:
+    """Part `m` comes to ball `k`, which is crushed: it may not close on it, but slide past it.
+
+    What is told at once to have come to it again is about to close on it.
+    """
+    if motions is None or parts is None:
+        return
+    ball, world = state.balls[w, k], state.worlds[w]
+    turn, ends = turn_of(tables.turns, world.scene, m), ends_of(state.ends, w, m)
+    side = side_of_part(state.part_sides, w, k, m)
+    _, closing = _approach(ball, motions[w, m], parts[world.scene, m], turn, ends, side, world.time_hi, world.time_lo)
+    if closing > 0.0 or (ball.hi == world.time_hi and ball.lo == world.time_lo):
+        block(state, tables, motions, parts, w, m, ledger)
+    else:
+        ball.hi, ball.lo = world.time_hi, world.time_lo
+        plan_parts(state, tables, w, k)
+
+
+@function
+def _approach(
+    ball: Record, motion: Record, part: Record, turn: int, ends: Record, side: int, hi: float, lo: float
+) -> tuple[float, float]:
+    """How far [m] a part is from a crushed ball at an instant, and how fast [m/s] it closes; 0 within rounding."""
+    x, y, ux, uy, back, front = core_at(part, motion, turn, ends, hi, lo)
+    nx, ny, distance, nearest = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side, ball.slack)
+    vx, vy = surface_velocity(motion, part, turn, ends, ux, uy, front, nearest * ux, nearest * uy)
+    closing = vx * nx + vy * ny
+    return distance - part.reach, closing if abs(closing) > ULPS_OF_SPEED * (abs(vx) + abs(vy)) else 0.0
 
 
 @function

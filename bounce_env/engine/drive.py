@@ -7,7 +7,7 @@ against what they touch, and every ball that it can reach searches it anew.
 from bounce_env.engine.disturb import disturb
 from bounce_env.engine.ends import ends_of, is_dragged, move_ends, next_stop_of_ends, set_ends_off, stop_ends
 from bounce_env.engine.jit import Record, Table, function, routine
-from bounce_env.engine.layout import OUT, PART_STOPS, State, Tables
+from bounce_env.engine.layout import CRUSHED, OUT, PART_STOPS, State, Tables
 from bounce_env.engine.parts import core_at, kept_offset, side_of_part, stop_instant, surface_velocity, turn_of
 from bounce_env.engine.search import plan_parts
 
@@ -129,11 +129,21 @@ def _halt(
 ) -> None:  # fmt: skip
     """Let part `m` stop at the instant (hi, lo): where it is if it is `blocked`, or as it comes to a stop."""
     end_rides(state, tables, w, m)
+    _let_caught_go(state, w, m)
     if is_dragged(ends_of(state.ends, w, m), part):
         _halt_wall(motion, part, world, state.ends, tables.guides, w, m, blocked, hi, lo, ledger)
     else:
         _halt_capsule(motion, part, world, turn_of(tables.turns, world.scene, m), offset, hi, lo, ledger)
     replan_part(state, tables, state.zones, w, m)
+
+
+@function
+def _let_caught_go(state: State, w: int, m: int) -> None:
+    """Part `m` no longer closes on the balls that it has caught, of which none is crushed yet."""
+    for k in range(state.balls.shape[1]):
+        ball = state.balls[w, k]
+        if ball.struck == m and ball.status != CRUSHED:
+            ball.struck, ball.squeezes = -1, 0
 
 
 @function

@@ -150,6 +150,8 @@ def _slides_on(ball: Record, touches: Table, w: int, i: int) -> bool:
             return False
     bear(ball, touch)
     ball.vx, ball.vy, ball.ax, ball.ay = touch.ux + rate * ux, touch.uy + rate * uy, ax, ay
+    if abs(ball.vx) + abs(ball.vy) <= slow:
+        ball.vx, ball.vy = 0.0, 0.0  # it stands while the part slides by: the rest is rounding
     return True
 
 

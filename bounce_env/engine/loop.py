@@ -9,8 +9,8 @@ import math
 from bounce_env.engine.arrive import arrive, end_flight, snap
 from bounce_env.engine.contact import resolve
 from bounce_env.engine.crossing import cross
-from bounce_env.engine.crush import crush
-from bounce_env.engine.drive import block, part_stops, rest_parts
+from bounce_env.engine.crush import crush, meet_crushed
+from bounce_env.engine.drive import part_stops, rest_parts
 from bounce_env.engine.instant import before, since
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import (
@@ -28,7 +28,7 @@ from bounce_env.engine.layout import (
 from bounce_env.engine.pairs import collide, first_pair
 from bounce_env.engine.parts import offset_at, plan_zones, stop_instant
 from bounce_env.engine.search import plan_parts, pull
-from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, UNSURE
+from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
 
 # How a run of the loop ends.
 DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
@@ -153,7 +153,7 @@ def _ball_event(state: State, tables: Tables, w: int, k: int, ledger: Table) -> 
         cross(state, tables, w, k, ledger)
         return 1
     if ball.status == CRUSHED:
-        block(state, tables, state.motions, tables.parts, w, ball.part_index, ledger)
+        meet_crushed(state, tables, state.motions, tables.parts, w, k, ball.part_index, ledger)
         return 1
     planning = ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE
     bounces = state.worlds[w].bounces
@@ -172,10 +172,17 @@ def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     end_flight(ball, tables, scene, gx, gy, t, ball.next_hi, ball.next_lo)
     snap(state, tables, w, k)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
-    at_once = t == 0.0 and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
+    at_once = _is_over_at_once(ball, t) and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
     resolve(state, tables, w, k, at_once, ledger)
     if ball.status == CRUSHED:
         crush(state, tables, state.motions, tables.parts, w, k, ledger)
+
+
+@function
+def _is_over_at_once(ball: Record, t: float) -> bool:
+    """Whether in `t` seconds of flight neither the ball's place nor its velocity has changed by more than rounding."""
+    speed, pull = abs(ball.vx) + abs(ball.vy), abs(ball.gx) + abs(ball.gy)
+    return speed * t <= ball.slack and pull * t <= ULPS_OF_SPEED * speed
 
 
 @function

@@ -17,6 +17,7 @@ from bounce_env.engine.resolve import is_caught, log, take_opposed
 from bounce_env.engine.search import pull, resolve_next
 from bounce_env.engine.tolerances import (
     MEETINGS_AT_ONE_INSTANT,
+    PRESSING,
     ROLLING,
     SQUEEZES,
     ULPS_OF_LENGTH,
@@ -143,12 +144,13 @@ def collide(state: State, tables: Tables, w: int, k: int, j: int, hi: float, lo:
 def _count(world: Record, one: Record, other: Record, head: Record, hi: float, lo: float) -> None:
     """Count the hits of balls at one instant, and keep the fastest speed of any: what is left of it may be rounding.
 
-    Instants in between which no ball moves by more than what counts as touching are one.
+    Instants in between which no ball moves by more than what counts as touching are one, and so is a row of such.
     """
     t = since(hi, lo, world.meet_hi, world.meet_lo)
     g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
     if not (world.meet_speed + g * t) * t <= ULPS_OF_LENGTH * head.extent or t < 0.0:
-        world.meet_hi, world.meet_lo, world.meets, world.meet_speed = hi, lo, 0, 0.0
+        world.meets, world.meet_speed = 0, 0.0
+    world.meet_hi, world.meet_lo = hi, lo
     world.meets += 1
     world.meet_speed = max(world.meet_speed, _speeds(one, other))
 
@@ -210,9 +212,9 @@ def _exchange(
 @function
 def _least_rebound(one: Record, other: Record, nx: float, ny: float, head: Record) -> float:
     """The slowest [m/s] that one of two balls leaves the other one which it is pressed on; 0 where it is not."""
-    if (one.ax - other.ax) * nx + (one.ay - other.ay) * ny >= 0.0:
-        return 0.0
     g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
+    if (one.ax - other.ax) * nx + (one.ay - other.ay) * ny >= -PRESSING * g:
+        return 0.0
     return max(head.rest_speed, ROLLING * math.sqrt(g * 2.0 * head.ball_radius))
 
 

@@ -16,30 +16,28 @@ SECONDS = 20.0
 EVENTS = 20_000  # in one call
 
 
-def is_clear(world: World) -> bool:
-    """Whether no ball is deeper than 1e-9 m inside of a wall, a part or another ball, or outside of the box."""
+def overlap(world: World) -> float:
+    """How deep [m] a ball is inside of a wall, a part or another ball, or outside of the box; negative if none is."""
     radius, place = world.scene.ball.radius, world.position
     cores = {
         index: ((x0, y0), (x1, y1))
         for (index, _), (x0, y0, x1, y1) in zip(world.scene.parts, world.cores.tolist(), strict=True)
     }
     apart = np.hypot(*(place[:, None] - place[None, :]).T) + 10.0 * np.eye(len(place))
-    return bool(
-        np.isfinite(world.velocity).all()
-        and (np.abs(place - 0.5) <= 0.5 - radius + 1e-9).all()
-        and apart.min() >= 2.0 * radius - 1e-9
-        and min(gap for x, y in place.tolist() for _, gap in gaps(world.scene, cores, x, y)) >= -1e-9
-    )
+    beside = min(gap for x, y in place.tolist() for _, gap in gaps(world.scene, cores, x, y))
+    return float(max((np.abs(place - 0.5) - (0.5 - radius)).max(), 2.0 * radius - apart.min(), -beside))
 
 
 def test_moving_scenes() -> None:
     """Soak: 10^5 scenes with 1 to 5 balls, 20 s each; a command before every piece of them.
 
-    What uses up its budget does so in due time, but for a few in ten thousand: balls jammed between others, or between
-    two surfaces of which one drags them in by friction alone.
+    What uses up its budget does so in due time: next to never does time stand still.
     """
     counts: Counter[str] = Counter()
+    deepest, jams = -1.0, list[int]()
     for seed in range(soak_count(150, 100_000)):
+        if seed % 1000 == 0:
+            print(seed, dict(counts), f"deepest {deepest:.2g} m", jams, flush=True)  # noqa: T201
         rng = np.random.default_rng(seed)
         scene = moving_scene(rng)
         world = new_world(scene, balls=int(rng.integers(1, 6)))
@@ -50,18 +48,20 @@ def test_moving_scenes() -> None:
         while world.time < SECONDS:
             command_at_random(rng, world)
             world.advance(float(rng.choice([0.0078125, 0.125, 0.5, 2.0])), max_events=EVENTS)
-            assert is_clear(world), seed
+            assert np.isfinite(world.velocity).all(), seed
+            deepest = max(deepest, overlap(world))
+            assert deepest <= 1e-9, seed
             statuses = set(world.status.tolist())
             assert statuses <= {OK, BUDGET, CRUSHED}, seed
             seen |= statuses
             if BUDGET in statuses:
                 before = world.time
                 world.advance(1.0, max_events=EVENTS)
-                counts["jammed"] += world.time <= before + 1e-7
+                jams += [seed] if world.time <= before + 1e-7 else []
                 break
         counts["budget" if BUDGET in seen else "crushed" if CRUSHED in seen else "ok"] += 1
-    print(dict(counts))  # noqa: T201
-    assert counts["jammed"] <= 0.001 * counts.total()
+    print(dict(counts), f"deepest {deepest:.2g} m, jams {jams}")  # noqa: T201
+    assert len(jams) <= 1e-4 * counts.total(), jams
     # Piles of balls and slow rolling, all of it in small hops.
     assert counts["budget"] <= 0.1 * counts.total()
 

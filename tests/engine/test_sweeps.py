@@ -74,18 +74,23 @@ class Sweep(NamedTuple):
 
 
 def hunt(draw: Callable[[np.random.Generator], Sweep]) -> None:
-    """Soak: 10^5 sweeps."""
-    hits = 0
+    """Soak: 10^5 sweeps, besides those that begin with an overlap."""
+    swept, hits, seed = 0, 0, -1
     count = soak_count(1500, 100_000)
-    for seed in range(count):
+    while swept < count:
+        seed += 1
+        if seed % 10_000 == 0:
+            print(draw.__name__, swept, hits, flush=True)  # noqa: T201
         sweep = draw(np.random.default_rng(seed))
         if sweep.gap_at(np.longdouble(0)) < 1e-6 * sweep.length:
             continue
+        swept += 1
         size = 3.0 * (sweep.length + sweep.reach) + (math.hypot(*sweep.ball[2:4]) + sweep.speed) * sweep.horizon
         size += math.hypot(*sweep.ball[4:]) * sweep.horizon**2
         found = sweep.found(2.0**-48 * size)
         check(found, sweep.horizon, sweep.gap_at, size, seed)
         hits += found < math.inf
+    print(f"{draw.__name__}: {swept} sweeps, {hits} hits")  # noqa: T201
     assert 0.1 * count < hits < 0.9 * count
 
 

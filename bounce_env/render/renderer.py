@@ -124,7 +124,9 @@ def _ends(name: str, value: npt.ArrayLike, count: int) -> npt.NDArray[np.float64
 
 
 def _faded(name: str, value: npt.ArrayLike | None) -> npt.NDArray[np.float64]:
-    rows = np.zeros((0, 3)) if value is None else np.asarray(value, dtype=np.float64)
+    rows = np.asarray(() if value is None else value, dtype=np.float64)
+    if rows.size == 0:
+        rows = rows.reshape(0, 3)
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise ValueError(f"{name} has shape {rows.shape}: must be (n, 3), x, y in metres and freshness from 0 to 1")
     if not ((rows[:, 2] >= 0.0) & (rows[:, 2] <= 1.0)).all():

@@ -11,6 +11,7 @@ from rollouts import assert_same
 from bounce_env import Scene, Sensor, Wall, load_scene
 from bounce_env.games import pinball, pinball_rules
 from bounce_env.games.table import layout_of, problems_of
+from bounce_env.render import Projection
 
 PINBALL = "Bounce/Pinball-v0"
 NONE, LEFT, RIGHT, BOTH = range(4)
@@ -338,7 +339,8 @@ def test_what_is_hit_counts_once_and_is_lit_until_the_step_ends():
     env.step(NONE)
     later = env.render()
     assert env.unwrapped._batch.counters[0, pinball_rules.BY_BUMPERS] == 50.0
-    (left, top), (right, bottom) = env.unwrapped._renderer.projection.to_pixels([(x - 0.03, y), (x + 0.03, y - 0.03)])
+    projection = Projection.fit(TABLE.bounds)
+    (left, top), (right, bottom) = projection.to_pixels([(x - 0.03, y), (x + 0.03, y - 0.03)])
     corner = np.s_[round(top) : round(bottom), round(left) : round(right)]
     brightness = [picture[corner].astype(float).mean() for picture in (dark, lit, later)]
     assert brightness[1] > 1.1 * brightness[0]

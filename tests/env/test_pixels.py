@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from dataclasses import replace
 
 import gymnasium as gym
 import numpy as np
@@ -11,7 +12,9 @@ from rollouts import MODES, PADDLE, PINBALL, assert_same, make_sync, make_vec, s
 from stable_baselines3 import PPO
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
+from bounce_env import frames
 from bounce_env.registration import ENTRIES
+from bounce_env.render import Renderer
 from bounce_env.sb3 import BounceVecEnv
 
 PIXELS = {"obs": "pixels", "height": 40}
@@ -71,11 +74,11 @@ def test_an_observation_is_what_render_gives_but_for_the_score():
     assert info["score"] == 1.0
 
 
-@pytest.mark.parametrize("env_id", IDS)
+@pytest.mark.parametrize(("env_id", "options"), [*((env_id, {}) for env_id in IDS), (PADDLE, {"num_levels": 20})])
 @pytest.mark.parametrize("mode", MODES)
-def test_a_batch_sees_what_single_environments_see(env_id, mode):
+def test_a_batch_sees_what_single_environments_see(env_id, options, mode):
     """Frames, final frames of episodes that are over, infos and ends: all as Gymnasium's own vector env has them."""
-    kwargs = {**PIXELS, "time_limit": 2.0, "trail": 0.2}
+    kwargs = {**PIXELS, "time_limit": 2.0, "trail": 0.2, **options}
     ours, theirs = make_vec(3, mode, env_id, **kwargs), make_sync(3, mode, env_id, **kwargs)
     assert_same(ours.reset(seed=7), theirs.reset(seed=7))
     assert ours.observation_space == theirs.observation_space
@@ -89,6 +92,18 @@ def test_a_batch_sees_what_single_environments_see(env_id, mode):
             options = {"reset_mask": over}
             assert_same(ours.reset(options=options), theirs.reset(options=dict(options)))
     assert ends > 3
+
+
+def test_a_frame_shows_the_level_that_is_played(monkeypatch):
+    monkeypatch.setattr(frames, "_MOST_LEVELS", 2)
+    env = gym.make(PADDLE, num_levels=20, **PIXELS, disable_env_checker=True).unwrapped
+    levels = set()
+    for seed in range(8):
+        observation, info = env.reset(seed=seed)
+        expected = Renderer(env.scene, *env._frames.size).frame(replace(env.picture(), score=None))
+        assert_same(observation, expected)
+        levels.add(info["level"])
+    assert len(levels) > 4
 
 
 def test_the_final_frame_is_of_the_end_and_the_observation_of_the_next_start():
@@ -109,13 +124,13 @@ def test_sb3_gets_the_last_frame_of_an_episode():
     pixels = BounceVecEnv(PADDLE, 3, seed=2, **PIXELS)
     states = BounceVecEnv(PADDLE, 3, seed=2)
     single = [gym.make(PADDLE, **PIXELS) for _ in range(3)]
-    frames, _ = pixels.reset(), states.reset()
-    assert frames.dtype == np.uint8
+    seen, _ = pixels.reset(), states.reset()
+    assert seen.dtype == np.uint8
     last = [env.reset(seed=2 + i)[0] for i, env in enumerate(single)]
-    assert_same(frames, np.stack(last))
+    assert_same(seen, np.stack(last))
     ends = 0
     for actions in scripted_for(pixels, 120):
-        frames, rewards, dones, infos = pixels.step(actions)
+        seen, rewards, dones, infos = pixels.step(actions)
         _, expected, ended, known = states.step(actions)
         assert_same((rewards, dones), (expected, ended))
         for w, env in enumerate(single):
@@ -126,7 +141,7 @@ def test_sb3_gets_the_last_frame_of_an_episode():
                 last[w], _ = env.reset()
                 ends += 1
             assert_same(infos[w], known[w])
-        assert_same(frames, np.stack(last))
+        assert_same(seen, np.stack(last))
     assert ends > 3
 
 
@@ -160,6 +175,13 @@ def test_a_restored_state_is_seen_without_the_trail_of_another():
     for _ in range(5):
         env.step([0.5])
     assert_same(env.restore_state(state), plain._frames.observations[0])
+    env.step([0.5])
+    later = env.clone_state()
+    env.restore_state(state)
+    restored = env.restore_state(later)  # one step later than what was seen last: still no step of this play
+    assert len(np.unique(env.picture().trail[:, :2], axis=0)) == 1
+    assert_same(restored, plain.step([0.5])[0])
+    plain.restore_state(state)
     envs = make_vec(2, **PIXELS, trail=0.3)
     envs.reset(seed=4)
     envs.step(np.zeros((2, 1)))

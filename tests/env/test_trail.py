@@ -55,8 +55,11 @@ def test_the_trail_goes_through_the_very_place_of_a_bounce(frame_skip):
     hit = (WALL - 0.9) / 1.0
     bounce = trail[trail[:, 0].argmax()]
     np.testing.assert_allclose(bounce[:2], (WALL, 0.5 + 0.6 * hit - G / 2 * hit**2), atol=1e-9)
-    x = trail[: trail[:, 0].argmax() + 1, 0]
-    assert (np.diff(x) > 0).all()  # and to the wall it goes straight
+    x, y, fresh = trail[: trail[:, 0].argmax() + 1].T  # and up to there it is the flight's curve
+    t = env._batch.episodes[0].frames / 60 - 0.5 * (1.0 - fresh)
+    np.testing.assert_allclose(x, 0.9 + t, atol=1e-9)
+    np.testing.assert_allclose(y, 0.5 + 0.6 * t - G / 2 * t * t, atol=1e-9)
+    assert np.diff(t).max() <= 1 / 60 + 1e-9
 
 
 def test_several_bounces_in_a_step_are_cut_short_but_for_the_last():

@@ -4,10 +4,14 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
 
-.PHONY: train test soak lint clean
+.PHONY: train test results soak lint clean
 
 train: $(VENV)/train
 	$(BIN)/python -m agents.train
+
+# All agents and baselines on all games: at most an hour on 2 cores. What it has finished it does not do again.
+results: $(VENV)/train
+	$(BIN)/python -m agents.study
 
 test: lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile

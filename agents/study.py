@@ -4,7 +4,7 @@ import json
 import multiprocessing
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -79,13 +79,15 @@ class StudyOptions:
     """Folder for the run folders, the table and the picture. What is finished there already is not trained again."""
     episodes: int = 500
     """Held-out episodes of each player."""
+    configs: Path = Path("configs")
+    """Folder with the hyperparameters, <algo>.yml."""
     processes: int = 2
     """Trainings, and then evaluations, side by side."""
     steps: int | None = None
     """Environment steps of each training. Default: what the configs say."""
 
 
-def study(options: StudyOptions) -> int:
+def study(options: StudyOptions, studies: Sequence[Study] = STUDIES) -> int:
     """Train PPO with three seeds on each game, DQN and SAC once, and measure them and all baselines.
 
     Writes results.md (a table: mean score, its 95 % interval over trainings and episodes, normalised score, steps and
@@ -95,25 +97,25 @@ def study(options: StudyOptions) -> int:
     check_range("processes", options.processes, 1)
     context = multiprocessing.get_context("spawn")  # a forked child would inherit torch's threads
     with ProcessPoolExecutor(options.processes, mp_context=context) as pool:
-        trainings = {(one.env_id, *kwargs_key(one), algo, seed): one for one in STUDIES for algo, seed in runs_of(one)}
+        trainings: dict[Any, Study] = {}
+        for one in studies:
+            for algo, seed in runs_of(one):
+                trainings.setdefault((one.env_id, *kwargs_key(one), algo, seed), one)
         say(
             f"training {len(trainings)} agents, {options.processes} at a time; their output: {options.output}/*/log.txt"
         )
-        made = {
-            key: pool.submit(train_one, one, key[-2], key[-1], options.output, options.steps)
-            for key, one in trainings.items()
-        }
+        made = {key: pool.submit(train_one, one, key[-2], key[-1], options) for key, one in trainings.items()}
         folders = {}
         for key, future in made.items():
             folders[key] = future.result()
             say(f"trained: {folders[key]}")
-        rows = [row for one in STUDIES for row in measured(one, folders, options.episodes, pool)]
-    panels = [panel(one, folders, rows) for one in STUDIES if one.test_kwargs is None]
+        rows = [row for one in studies for row in measured(one, folders, options.episodes, pool)]
+    panels = [panel(one, folders, rows) for one in studies if one.test_kwargs is None]
     draw(panels, options.output / "learning_curves.png")
     write_text(options.output / "results.md", table(rows))
     content = {"versions": versions(), "rows": [asdict(row) for row in rows]}
     write_text(options.output / "results.json", json.dumps(content, indent=2) + "\n")
-    say(table(rows))
+    say(table(rows).rstrip())
     say(f"all in {options.output}")
     return 0
 
@@ -130,17 +132,18 @@ def runs_of(one: Study) -> Iterator[tuple[str, int]]:
             yield algo, seed
 
 
-def train_one(one: Study, algo: str, seed: int, output: Path, steps: int | None) -> Path:
+def train_one(one: Study, algo: str, seed: int, options: StudyOptions) -> Path:
     """Train an agent in a process of its own; returns its run folder. Raises Refused where the training failed."""
     name = "-".join(one.title.lower().replace(",", "").split())
-    home = output / f"{name}-{algo}-{seed}"
+    home = options.output / f"{name}-{algo}-{seed}"
     finished = sorted(home.glob("*/summary.json"))
     if finished:
         return finished[-1].parent
     home.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, "-m", "agents.train", "--env-id", one.env_id, "--algo", algo, "--seed", str(seed)]
+    command += ["--config", str(options.configs / f"{algo}.yml")]
     command += ["--output", str(home), "--no-progress-bar", "--episodes", "100"]
-    command += ["--steps", str(steps)] if steps else []
+    command += ["--steps", str(options.steps)] if options.steps else []
     command += ["--env-kwargs", json.dumps(dict(one.train_kwargs))] if one.train_kwargs else []
     with (home / "log.txt").open("w", encoding="utf-8") as log:
         code = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False).returncode
@@ -212,7 +215,7 @@ def table(rows: list[Row]) -> str:
         i = row.interval
         digits = 0 if abs(i.mean) >= 1000.0 else 2
         normalised = {IDLE: "0", BEST: "1"}.get(row.player) or f"{row.normalised:.2f}"
-        cost = "| |" if row.steps is None else f"| {row.steps / 1e6:.1f} M | {row.seconds:.0f} s |"
+        cost = "| | |" if row.steps is None else f"| {row.steps / 1e6:.1f} M | {row.seconds:.0f} s |"
         lines.append(
             f"| {row.study} | {row.player} | {i.mean:.{digits}f} | {i.lo:.{digits}f} to {i.hi:.{digits}f} "
             f"| {normalised} | {i.runs} x {i.episodes // i.runs} {cost}"

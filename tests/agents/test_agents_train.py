@@ -18,6 +18,7 @@ from PIL import Image
 from stable_baselines3 import PPO
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
+from agents.algorithms import PPOHyperparameters
 from agents.baselines import BASELINES
 from agents.command import Refused
 from agents.config import load_config
@@ -99,9 +100,11 @@ def test_summary(run_folder: Path) -> None:
 
 def test_config_of_the_run_says_everything_and_is_a_config(run_folder: Path, config: Path) -> None:
     written = yaml.safe_load((run_folder / "config.yml").read_text())
-    assert written["run"] == {"env_id": ENV_ID, "seed": 5, "versions": versions()}
+    assert written["run"] == {"env_id": ENV_ID, "algo": "ppo", "seed": 5, "versions": versions()}
     assert written[ENV_ID]["gamma"] == 0.99  # a default
-    assert load_config(run_folder / "config.yml", ENV_ID, {}) == load_config(config, ENV_ID, {})
+    assert load_config(run_folder / "config.yml", ENV_ID, {}, PPOHyperparameters) == load_config(
+        config, ENV_ID, {}, PPOHyperparameters
+    )
 
 
 def test_learning_curve(run_folder: Path) -> None:
@@ -122,6 +125,32 @@ def test_tensorboard_follows_the_steps(run_folder: Path) -> None:
     events.Reload()
     assert [event.step for event in events.Scalars("train/loss")][-1] >= 1536
     assert "rollout/ep_rew_mean" in events.Tags()["scalars"]
+
+
+@pytest.mark.parametrize("algo", ["dqn", "sac"])
+def test_other_algorithms(algo: str, tmp_path: Path) -> None:
+    path = tmp_path / "tiny.yml"
+    action = "discrete" if algo == "dqn" else "continuous"
+    entry = {"n_timesteps": 640, "n_envs": 4, "learning_starts": 100, "env_kwargs": {"action": action}}
+    path.write_text(yaml.safe_dump({ENV_ID: entry}))
+    folder = trained_in(tmp_path / "runs", path, algo=algo)
+    run = open_run(folder)
+    assert run.algo == algo
+    assert type(run.load_model()).__name__ == algo.upper()
+    assert run.load_model().num_timesteps == 640
+    assert json.loads((folder / "summary.json").read_text())["results"]["trained"]["n"] == 12
+    task, players = named(str(folder), None, None)
+    assert task.resolved_kwargs["action"] == action
+    assert play(task, players["trained"], 4).scores.shape == (4,)
+    # It goes on, with an empty replay buffer.
+    config = yaml.safe_load((folder / "config.yml").read_text())
+    config[ENV_ID]["n_timesteps"] = 960
+    (folder / "config.yml").write_text(yaml.safe_dump(config))
+    model = run.load_model()
+    model.hyperparameters["n_timesteps"] = 960
+    model.save(folder / "model.zip")
+    assert train(TrainOptions(resume=folder, episodes=4, progress_bar=False)) == 0
+    assert open_run(folder).load_model().num_timesteps == 960
 
 
 def test_the_same_seed_trains_the_same_agent(run_folder: Path, config: Path, tmp_path: Path) -> None:

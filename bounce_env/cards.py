@@ -124,9 +124,10 @@ class PinballEnv(BounceEnv):
     | "discrete" | Discrete(4) | buttons: 0 none, 1 left, 2 right, 3 both; with `nudge` (6): 4 left, 5 right |
     | "buttons" | MultiBinary(2) | left, right; with `nudge` MultiBinary(4): left, right, nudge left, nudge right |
 
-    A button that is held holds its flipper up. A nudge adds 0.25 m/s to its side and 0.15 m/s up the table to the
-    velocity of the ball, at most every 0.25 s, and 1 to the tilt meter, which falls by 0.5 a second: at 3 the table is
-    tilted, and until that ball is lost the flippers are dead, no points are given and no ball is given back.
+    A button that is held holds its flipper up. One that is let go does not act for 0.3 s: who hammers the buttons is
+    not ready when the ball comes. A nudge adds 0.25 m/s to its side and 0.15 m/s up the table to the velocity of the
+    ball, at most every 0.25 s, and 1 to the tilt meter, which falls by 0.5 a second: at 3 the table is tilted, and
+    until that ball is lost the flippers are dead, no points are given and no ball is given back.
 
     Points, times the multiplier (`score` is their sum):
 
@@ -149,10 +150,11 @@ class PinballEnv(BounceEnv):
     | each flipper: 0 down, 1 up (left, right) | [0, 1] |
     | balls left, this one included, over `balls` | [0, 1] |
     | time for which a lost ball is still given back, over 5 s | [0, 1] |
-    | time that the ball has been at the flippers, over 4 s; 1: they are released until it leaves | [0, 1] |
+    | time that the ball has been at the flippers, over 2 s; 1: they are released until it leaves | [0, 1] |
     | multiplier over 5 | [0, 1] |
     | hits of bumpers and slingshots since a flipper's touch, over 20 | [0, 1] |
     | time without points or a touch of a flipper, over 10 s | [0, 1] |
+    | time until each button acts again, over 0.3 s (left, right) | [0, 1] |
     | each target (3): 1 if it is lit | {0, 1} |
     | each lane (3): 1 if it is lit | {0, 1} |
     | each bumper (3): what is left of its cooldown of 0.1 s | [0, 1] |
@@ -163,7 +165,7 @@ class PinballEnv(BounceEnv):
     no size is given. One frame does not tell how fast the ball is (stack some, or ask for a `trail`), and none tells
     what only clocks and counters know: balls left, ball save, hold timer, multiplier, cooldowns, tilt.
 
-    Reward: points / 1000, and -0.5 for every ball that is lost.
+    Reward: points / 1000, and -2 for every ball that is lost.
 
     Start: the ball in the lane, shot at 1.45 to 2.4 m/s as the episode's seed says for each one. A step in which a ball
     is in the lane lasts until it is in play, and `frame_skip` frames more where it was there from the start. Options of
@@ -171,7 +173,7 @@ class PinballEnv(BounceEnv):
 
     End: terminated when the last ball drains; truncated after `time_limit` seconds of play (or, never seen in play,
     when more than 10 000 events fall into one frame: `end_reason` "budget"). A ball that drains within 5 s is given
-    back, once. When one has been in the flippers' zone for 4 s, both are released until it has left it
+    back, once. When one has been in the flippers' zone for 2 s, both are released until it has left it
     (`hold_released`). One that for 10 s has neither met a flipper nor earned points is stuck, and is shot again
     (`stuck_freed`).
 

@@ -42,6 +42,7 @@ from bounce_env.games.pinball_rules import (
     NUDGE_LEFT,
     NUDGE_RIGHT,
     NUDGES,
+    REST_FRAMES,
     RIGHT,
     SAVES,
     SHOT,
@@ -53,6 +54,7 @@ from bounce_env.games.pinball_rules import (
     Rules,
     borrow_rules,
     hold_timer,
+    rest_left,
     save_left,
 )
 from bounce_env.games.pinball_view import REFERENCE_SPEED, observe
@@ -68,7 +70,7 @@ from bounce_env.games.table import (
 )
 
 REWARD_PER_POINT = 1e-3
-REWARD_PER_BALL = -0.5  # for every ball that is lost; the score knows nothing of it
+REWARD_PER_BALL = -2.0  # for every ball that is lost; the score knows nothing of it
 
 LAUNCH_SPEED = (1.45, 2.4)  # m/s
 
@@ -84,6 +86,7 @@ def begin(rules: Rules, worlds: Worlds, w: int) -> None:
     memory = worlds.memory[w]
     restart(worlds.state, worlds.tables, w)
     memory.passed, memory.pressed = 0, 0
+    memory.left_ready, memory.right_ready = 0, 0
     table = rules.layout.tables[worlds.state.worlds[w].scene]
     memory.lit = (1 << table.targets) - 1
     new_ball(memory)
@@ -148,9 +151,14 @@ def press(rules: Rules, worlds: Worlds, motions: Table, parts: Table, w: int, bu
             part = parts[scene, m]
             velocity = part.up_speed if buttons & side else -part.down_speed
             command(worlds.state, worlds.tables, motions, parts, w, m, velocity)
-    pressed_now = buttons & (LEFT | RIGHT) & ~memory.pressed
+    pressed_now, let_go = buttons & ~memory.pressed, memory.pressed & ~buttons
     worlds.counters[w, FLIPS] += (pressed_now & 1) + (pressed_now >> 1)
-    memory.pressed = buttons & (LEFT | RIGHT)
+    ready = worlds.episodes[w].frames + REST_FRAMES
+    if let_go & LEFT:
+        memory.left_ready = ready
+    if let_go & RIGHT:
+        memory.right_ready = ready
+    memory.pressed = buttons
 
 
 @function
@@ -164,7 +172,11 @@ def in_force(rules: Rules, worlds: Worlds, w: int, code: int) -> int:
         nudge(worlds, w, code)
     if memory.tilted or hold_timer(memory, frames) >= HOLD_FRAMES:
         return 0
-    return code & (LEFT | RIGHT)
+    buttons = 0
+    for side in (LEFT, RIGHT):
+        if code & side and (memory.pressed & side or rest_left(memory, frames, side) == 0):
+            buttons |= side
+    return buttons
 
 
 @function
@@ -376,7 +388,7 @@ class PinballGame(Game):
         speed = math.sqrt(fastest**2 + 2.0 * (abs(gx) * (x1 - x0) + abs(gy) * (y1 - y0))) / REFERENCE_SPEED
         flippers = int(np.count_nonzero(layout.sides[0]))
         table = layout.tables[0]
-        shares = flippers + 6 + int(table["targets"]) + int(table["rollovers"]) + layout.bumpers.shape[1]
+        shares = flippers + 8 + int(table["targets"]) + int(table["rollovers"]) + layout.bumpers.shape[1]
         buttons = 4 if options.nudge else 2
         shares += 2 * options.nudge + (buttons if options.repeat_action_probability > 0.0 else 0)
         high = np.array([1.0, 1.0, speed, speed] + [1.0] * shares, np.float32)

@@ -9,7 +9,8 @@ from bounce_env.games.table import Layout
 
 LAUNCH_FRAMES = 3 * FPS  # after which a ball counts as in play wherever it is
 SAVE_FRAMES = 5 * FPS  # a ball that is lost so soon is given back, once
-HOLD_FRAMES = 4 * FPS  # in the flippers' zone, after which both are released until the ball leaves it
+HOLD_FRAMES = 2 * FPS  # in the flippers' zone, after which both are released until the ball leaves it
+REST_FRAMES = 18  # after a button is let go: until then it does not act again
 STUCK_FRAMES = 10 * FPS  # without a hit of a flipper, or one that gives points: the ball is shot again
 
 # Buttons, as bits of the action's code.
@@ -34,6 +35,7 @@ MEMORY = record(
     zone="i8",  # frame in which it came into the flippers' zone; -1 outside
     scored="i8",  # frame of the last hit that gave points, or of a flipper
     pressed="i8",  # buttons in force
+    left_ready="i8", right_ready="i8",  # frames from which the buttons act again
     tilt="f8", tilted="i8",  # the tilt meter, and whether the flippers are dead for this ball
     nudged="i8",  # frame of the last nudge
 )  # fmt: skip
@@ -83,6 +85,13 @@ def borrow_rules(rules: Rules) -> Rules:
 def save_left(memory: Any, frame: int) -> int:
     """Frames for which a ball that is lost is given back."""
     return 0 if memory.saved else max(SAVE_FRAMES - (frame - memory.born), 0)
+
+
+@function
+def rest_left(memory: Any, frame: int, side: int) -> int:
+    """Frames until the button LEFT or RIGHT acts again."""
+    ready = memory.left_ready if side == LEFT else memory.right_ready
+    return max(ready - frame, 0)
 
 
 @function

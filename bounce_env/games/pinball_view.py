@@ -11,12 +11,16 @@ from bounce_env.games.episode import Worlds
 from bounce_env.games.pinball_points import FARMED, HIGHEST_MULTIPLIER
 from bounce_env.games.pinball_rules import (
     HOLD_FRAMES,
+    LEFT,
     NUDGE_FRAMES,
+    REST_FRAMES,
+    RIGHT,
     SAVE_FRAMES,
     STUCK_FRAMES,
     TILT,
     Rules,
     hold_timer,
+    rest_left,
     save_left,
 )
 from bounce_env.games.table import Layout
@@ -42,7 +46,9 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     out[w, i + 3] = memory.multiplier / HIGHEST_MULTIPLIER
     out[w, i + 4] = min(memory.farmed, FARMED) / FARMED
     out[w, i + 5] = (episode.frames - memory.scored) / STUCK_FRAMES
-    i += 6
+    out[w, i + 6] = rest_left(memory, episode.frames, LEFT) / REST_FRAMES
+    out[w, i + 7] = rest_left(memory, episode.frames, RIGHT) / REST_FRAMES
+    i += 8
     for lamp in range(table.targets):
         out[w, i + lamp] = (memory.lit >> lamp) & 1
     i += table.targets

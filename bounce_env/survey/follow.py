@@ -29,9 +29,10 @@ FATE = record(
 # A ball is where it was while it is no farther away, for at least so many events.
 EVENTS_IN_PLACE = 8
 
-# Events in a thirtieth of a second, the usual step of a game; more is a ball that rattles itself to death.
-STEP_RATE = 30.0
-EVENTS_IN_STEP = 500
+# Events in a sixtieth of a second, a frame of a game, as many as pinball allows; more is a ball that rattles itself to
+# death. One that all but stands on the end of a wall leaves it in more than a thousand tiny hops.
+STEP_RATE = 60.0
+EVENTS_IN_STEP = 10_000
 
 
 class Watch(NamedTuple):

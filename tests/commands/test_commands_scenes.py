@@ -57,6 +57,11 @@ def test_check_passes_the_example_scenes(path: Path, capsys):
     assert main(["scenes", "check", str(path), "--balls", balls]) == 0, capsys.readouterr().out
 
 
+def test_check_passes_the_pinball_table(capsys):
+    balls = "100000" if SOAK else "3000"
+    assert main(["scenes", "check", "pinball", "--balls", balls]) == 0, capsys.readouterr().out
+
+
 def test_check_prints_problems_with_the_balls_that_show_them(capsys):
     assert main(["scenes", "check", "paddle", "--balls", "500", "--scores", "1", "--show", "2"]) == 1
     lines = capsys.readouterr().out.splitlines()

@@ -18,7 +18,7 @@ import pytest
 
 GOLDEN = {
     "Bounce/Paddle-v0": "882cd901166dabf4fe8977cd69258c1e6eafc5e7b76ef6453636773070917294",
-    "Bounce/Pinball-v0": "99e377fbe90eb02940dd88caac1017fa650a6ce0338741c78b834216c7b9d61a",
+    "Bounce/Pinball-v0": "06dfb8bcc140a02811e0fbdd01e8942ce7b86824c0aa17753d7a95eabea678eb",
 }
 TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0}
 

@@ -15,7 +15,7 @@ from bounce_env.games.clone import States, clone_rows, restore_rows
 from bounce_env.games.episode import END_REASONS, EPISODE, Results, Worlds, bind, new_results
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
-from bounce_env.scene import Scene
+from bounce_env.scene import Scene, Sensor
 
 Mask = npt.NDArray[np.bool_]
 
@@ -153,10 +153,12 @@ class Batch:
     def scene(self, world: int) -> Scene:
         """The scene that a world plays now."""
         scene = self.game.scene_on(None if self.levels is None else int(self.levels[world]))
-        elements = list(scene.elements)
-        for index, center in zip(self.game.targets, self.target_places(world).tolist(), strict=True):
-            elements[index] = replace(elements[index], center=tuple(center))
-        return replace(scene, elements=tuple(elements)) if self.game.targets else scene
+        places = dict(zip(self.game.targets, map(tuple, self.target_places(world).tolist()), strict=True))
+        elements = (
+            replace(e, center=places[i]) if i in places and isinstance(e, Sensor) else e
+            for i, e in enumerate(scene.elements)
+        )
+        return replace(scene, elements=tuple(elements)) if places else scene
 
     def target_places(self, world: int) -> npt.NDArray[np.float64]:
         """The centres of the game's `targets` in a world now, (n, 2) [m]."""

@@ -174,7 +174,8 @@ def _problems_of_field(scene: Scene) -> Iterator[str]:
         assert isinstance(wall, Wall)
         (x0, y0), (x1, y1) = wall.reach or ((x, y), (x, y))
         if min(x0, x1) < x or max(x0, x1) > x + width or min(y0, y1) < y or max(y0, y1) > y + height:
-            yield f"reach = {wall.reach!r}: must be on the field, x {x:g} to {x + width:g} and y {y:g} to {y + height:g}"
+            where = f"x {x:g} to {x + width:g} and y {y:g} to {y + height:g}"
+            yield f"reach = {wall.reach!r}: must be on the field, {where}"
     yield from sorted(set(_in_the_way(scene)))
 
 

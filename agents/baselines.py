@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from agents import paddle_players, pinball_players
+from agents import paddle_players, pinball_players, walls_players
 from agents.look_ahead import LookAhead
 from agents.task import Player, Task
 
@@ -43,6 +43,12 @@ BASELINES: dict[str, dict[str, Callable[[Task], Player | LookAhead]]] = {
         "flail": pinball_players.flail,
         "timed": pinball_players.timed,
         "look_ahead": pinball_players.look_ahead,
+    },
+    "Bounce/Walls-v0": {
+        "random": random,
+        "nothing": walls_players.nothing,
+        "guide": walls_players.guide,
+        "look_ahead": walls_players.look_ahead,
     },
 }
 """By environment and name."""

@@ -114,7 +114,9 @@ class Frames:
         if renderer is None:
             while len(self._renderers) >= _MOST_LEVELS:
                 del self._renderers[next(iter(self._renderers))]
-            renderer = self._renderers[level] = Renderer(self._batch.scene(world), *self.size)
+            renderer = self._renderers[level] = Renderer(
+                self._batch.scene(world), *self.size, targets=self._batch.game.targets
+            )
         return renderer.frame(picture)
 
     def _go_on(self, w: int) -> None:
@@ -141,6 +143,7 @@ class Frames:
             hits=shown.hits[row, : len(scene.elements)],
             lit=None if batch.memory is None else batch.game.lamps(batch.memory[w]),
             score=float(batch.episodes[w].score) if score else None,
+            targets=batch.target_places(w),
             trail=self._ways[w].until(float(world.time_hi + world.time_lo)) if self._ways else None,
         )
 

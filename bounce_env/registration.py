@@ -27,6 +27,11 @@ ENTRIES = (
         entry_point="bounce_env.cards:PaddleEnv",
         vector_entry_point="bounce_env.vector:PaddleVectorEnv",
     ),
+    Entry(
+        "Bounce/Walls-v0",
+        entry_point="bounce_env.cards:WallsEnv",
+        vector_entry_point="bounce_env.vector:WallsVectorEnv",
+    ),
 )
 
 

@@ -11,17 +11,18 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from bounce_env.cards import PaddleEnv, PinballEnv
+from bounce_env.cards import PaddleEnv, PinballEnv, WallsEnv
 from bounce_env.env import action_space, taken_snapshot, world_seed
 from bounce_env.frames import Frames
 from bounce_env.games import episode
 from bounce_env.games.batch import Batch
 from bounce_env.games.clone import States
 from bounce_env.games.game import Game
-from bounce_env.games.options import Options, PaddleOptions, PinballOptions
+from bounce_env.games.options import Options, PaddleOptions, PinballOptions, WallsOptions
 from bounce_env.games.paddle import PaddleGame
 from bounce_env.games.pinball import PinballGame
 from bounce_env.games.start import start_rows
+from bounce_env.games.walls import WallsGame
 from bounce_env.render import Picture
 
 Observations = npt.NDArray[np.float32] | npt.NDArray[np.uint8]
@@ -274,3 +275,9 @@ class PinballVectorEnv(BounceVectorEnv):
     __doc__ = PinballEnv.__doc__
     game_type = PinballGame
     options_type = PinballOptions
+
+
+class WallsVectorEnv(BounceVectorEnv):
+    __doc__ = WallsEnv.__doc__
+    game_type = WallsGame
+    options_type = WallsOptions

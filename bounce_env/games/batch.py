@@ -2,6 +2,7 @@
 
 import hashlib
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -14,7 +15,7 @@ from bounce_env.games.clone import States, clone_rows, restore_rows
 from bounce_env.games.episode import END_REASONS, EPISODE, Results, Worlds, bind, new_results
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
-from bounce_env.scene import Scene
+from bounce_env.scene import Scene, Sensor
 
 Mask = npt.NDArray[np.bool_]
 
@@ -133,7 +134,9 @@ class Batch:
 
     def _counted(self, name: str, j: int) -> Array:
         counts = self.results.counted[:, j]
-        return counts.copy() if name.startswith("points_") else counts.astype(np.int64)
+        if name.startswith("points_"):
+            return counts.copy()
+        return counts.astype(np.bool_ if name.startswith("is_") else np.int64)
 
     def view(self, world: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Balls (1, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of a world now."""
@@ -149,7 +152,21 @@ class Batch:
 
     def scene(self, world: int) -> Scene:
         """The scene that a world plays now."""
-        return self.game.scene_on(None if self.levels is None else int(self.levels[world]))
+        scene = self.game.scene_on(None if self.levels is None else int(self.levels[world]))
+        places = dict(zip(self.game.targets, map(tuple, self.target_places(world).tolist()), strict=True))
+        elements = (
+            replace(e, center=places[i]) if i in places and isinstance(e, Sensor) else e
+            for i, e in enumerate(scene.elements)
+        )
+        return replace(scene, elements=tuple(elements)) if places else scene
+
+    def target_places(self, world: int) -> npt.NDArray[np.float64]:
+        """The centres of the game's `targets` in a world now, (n, 2) [m]."""
+        if not self.game.targets or self.tables.rings is None:
+            return np.zeros((0, 2))
+        rings = self.tables.rings[self.state.worlds["scene"][world]]
+        rows = [int(np.flatnonzero(rings["element"] == index)[0]) for index in self.game.targets]
+        return np.stack([rings["x"][rows], rings["y"][rows]], axis=1)
 
     def close(self) -> None:
         """End the threads."""

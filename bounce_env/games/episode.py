@@ -27,8 +27,8 @@ EPISODE = record(
 BOOKS = record(seconds="f8", score="f8", ball="i8", level="i8", end="i8", bounces="i8", speed_capped="i8")
 
 # How an episode ends; END_REASONS names them in info["end_reason"].
-RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET = 0, 1, 2, 3
-END_REASONS = (None, "drained", "time_limit", "budget")
+RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET, ALL_PLAYED = 0, 1, 2, 3, 4
+END_REASONS = (None, "drained", "time_limit", "budget", "all_played")
 
 NO_LEVEL = -1
 

@@ -22,11 +22,13 @@ class Game:
     options: what its user chose. rules: of a type that is a game (`games.rules`).
     observation_low, observation_high: bounds of what is observed.
     field: x_min, y_min, x_max, y_max [m] of where a ball may be launched by the options of a reset.
+    targets: the elements, circular sensors, that `begin` and `play` put where they want them.
     """
 
     counters: ClassVar[tuple[str, ...]]  # what is told at an episode's end of what the game has counted
     memory: ClassVar[np.dtype[Any] | None] = None  # what its rules remember of a world
     has_levels: bool = False
+    targets: tuple[int, ...] = ()
 
     actions: Actions
     rules: Any

@@ -8,10 +8,13 @@ import numpy as np
 from bounce_env.engine.jit import borrow, function, kernel
 from bounce_env.engine.layout import Array, borrow_state, borrow_tables
 from bounce_env.games.episode import (
+    ALL_PLAYED,
     DRAINED,
     NEXT_STEP,
+    OUT_OF_BUDGET,
     RUNNING,
     SAME_STEP,
+    TIME_LIMIT,
     Worlds,
     borrow_results,
     close_books,
@@ -109,8 +112,8 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
         if results.ended[w].end != RUNNING:
             open_books(results, w)
         end = episodes[w].end
-        results.terminated[w] = end == DRAINED
-        results.truncated[w] = end not in (DRAINED, RUNNING)
+        results.terminated[w] = end in (DRAINED, ALL_PLAYED)
+        results.truncated[w] = end in (TIME_LIMIT, OUT_OF_BUDGET)
         observe(rules, worlds, w, results.observations)
         if end != RUNNING:
             ended += 1

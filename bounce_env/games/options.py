@@ -52,3 +52,13 @@ class PinballOptions(Options):
     nudge: Annotated[bool, Field(strict=True)] = False
     balls: Annotated[StrictInt, Field(ge=1, le=9)] = 3
     time_limit: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)] | None = 120.0
+
+
+@dataclass(frozen=True, kw_only=True, config=CONFIG)
+class WallsOptions(Options):
+    """Of the game of walls."""
+
+    reward: Literal["sparse", "dense"] = "sparse"
+    gamma: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] = 0.99
+    balls: Annotated[StrictInt, Field(ge=1, le=9)] = 5
+    time_limit: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)] | None = 90.0

@@ -15,6 +15,7 @@ LAUNCHES = np.uint64(2)  # index 16 k + j: the j-th number of the launch of ball
 STICKY_ACTIONS = np.uint64(3)  # index: the frame
 LEVELS = np.uint64(4)  # index 0: which level an episode is played on
 LAYOUTS = np.uint64(5)  # seed: the level's number
+TARGETS = np.uint64(6)  # index 256 k + 2 j: the j-th place drawn for the target of ball k, x; and y after it
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)

@@ -25,6 +25,7 @@ _PADDLE, _PADDLE_LIT = (56, 218, 206, 255), (206, 255, 248, 255)
 _RAIL = (43, 50, 84, 255)
 _DRAIN, _DRAIN_LIT = (196, 62, 74, 255), (255, 128, 128, 255)
 _SENSOR, _SENSOR_LIT = (74, 148, 120, 255), (150, 255, 200, 255)
+_TARGET, _TARGET_FACE = (126, 232, 96, 255), (126, 232, 96, 60)
 _WIND, _WIND_ARROW = (96, 104, 232, 34), (116, 126, 236, 120)
 _WIND_LIT, _WIND_ARROW_LIT = (120, 140, 255, 90), (190, 200, 255, 220)
 _BALL = (255, 252, 240, 255)
@@ -79,6 +80,22 @@ def trail_look(scene: Scene, projection: Projection, freshness: float) -> Look:
     radius = max(spot * (0.35 + 0.65 * freshness), 0.5)
     center = (0.0, 0.0)
     return (Stroke(center, center, radius, (*_TRAIL, round(_TRAIL_PEAK * freshness))),)
+
+
+def target_look(target: Element, projection: Projection) -> Look:
+    """A circle to be entered, with its centre at the pixel coordinates (0, 0): a shining disc with rings."""
+    if not isinstance(target, Sensor) or target.circle is None:
+        raise TypeError(f"{target!r}: must be a circular sensor")
+    center = (0.0, 0.0)
+    radius = max(target.circle[1] * projection.scale, _SMALLEST_RADIUS)
+    pen = min(1.2 * _pen(projection), 0.12 * radius)
+    discs = []
+    for share in (1.0, 0.55):
+        discs += [(share * radius, _TARGET), (share * radius - 2.0 * pen, _TARGET_FACE)]
+    return (
+        *_glow(center, center, radius, 0.5 * radius, _TARGET, 60),
+        *(Stroke(center, center, size, color) for size, color in (*discs, (0.16 * radius, _TARGET))),
+    )
 
 
 def part_look(part: Part, way: Point, scene: Scene, projection: Projection, *, lit: bool) -> Look:

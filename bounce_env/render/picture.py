@@ -14,6 +14,7 @@ class Picture:
     None for all. hits: how often each element was struck since the last frame, shape (len(scene.elements),): what was
     struck lights up; None for nothing. lit: which elements are lit as lamps are, of the same shape; None for none.
     score: printed at the top; None for no text.
+    targets: centres, metres, of the sensors that the renderer was told are targets, shape (n, 2).
     trail: the way that a ball has come, shape (n, 3): x, y [m], and how fresh each point is, from 0, which has faded
     out, to 1, oldest first; None for none.
     """
@@ -25,3 +26,4 @@ class Picture:
     lit: npt.ArrayLike | None = None
     score: float | None = None
     trail: npt.ArrayLike | None = None
+    targets: npt.ArrayLike = ()

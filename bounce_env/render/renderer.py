@@ -1,13 +1,14 @@
 """The still scene drawn once; each frame copies it and draws what moves or was just struck."""
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from bounce_env.render.lazy_pygame import load_pygame
-from bounce_env.render.looks import ball_look, part_look, rail_look, still_look, trail_look
+from bounce_env.render.looks import ball_look, part_look, rail_look, still_look, target_look, trail_look
 from bounce_env.render.picture import Picture
 from bounce_env.render.projection import Projection
 from bounce_env.scene import Field, Scene, Sensor
@@ -17,19 +18,22 @@ class Renderer:
     """Draws one scene at one size, without a display.
 
     scene: what to draw. width, height: of a frame in pixels; see `Projection.fit` for what is left out.
+    targets: the elements, circular sensors, that are drawn as targets, where each picture says.
     Raises ValueError for a bad size, `gymnasium.error.DependencyNotInstalled` without pygame.
 
     projection: from metres to the frame's pixels, and back.
     """
 
-    def __init__(self, scene: Scene, width: int | None = None, height: int | None = None) -> None:
+    def __init__(
+        self, scene: Scene, width: int | None = None, height: int | None = None, *, targets: Sequence[int] = ()
+    ) -> None:
         load_pygame()
         from bounce_env.render import painter  # noqa: PLC0415 (pygame is an extra: only who draws needs it)
 
         self.projection = Projection.fit(scene.bounds, width, height)
         size = (self.projection.width, self.projection.height)
         parts = dict(scene.parts)
-        still = {i: e for i, e in enumerate(scene.elements) if i not in parts}
+        still = {i: e for i, e in enumerate(scene.elements) if i not in parts and i not in targets}
         rails = [look for part in parts.values() if (look := rail_look(part, self.projection))]
         beneath = sorted(still.values(), key=lambda e: not isinstance(e, Field))
         at_rest = [still_look(e, scene, self.projection, lit=False) for e in beneath]
@@ -44,6 +48,7 @@ class Renderer:
             )
             for i, e in parts.items()
         }
+        self._targets = [painter.Sprite(target_look(scene.elements[i], self.projection)) for i in targets]
         self._ball = painter.Sprite(ball_look(scene, self.projection))
         self._trail = painter.Trail(partial(trail_look, scene, self.projection))
         blank = painter.still_picture(*size, [])
@@ -58,6 +63,9 @@ class Renderer:
         """
         balls = self.projection.to_pixels(_points("balls", picture.balls))
         cores = self.projection.to_pixels(_ends("cores", picture.cores, len(self._parts)))
+        centers = self.projection.to_pixels(_points("targets", picture.targets))
+        if len(centers) != len(self._targets):
+            raise ValueError(f"targets: must be {len(self._targets)} centres, not {len(centers)}")
         alive = _flags("alive", picture.alive, len(balls), missing=True)
         hits = _flags("hits", picture.hits, self._elements, missing=False)
         hits |= _flags("lit", picture.lit, self._elements, missing=False)
@@ -66,6 +74,8 @@ class Renderer:
 
         pixels = self._background.copy()
         target = self._painter.surface_of(pixels)
+        for sprite, (x, y) in zip(self._targets, centers.tolist(), strict=True):
+            sprite.draw(target, x, y)
         for i in np.flatnonzero(hits).tolist():
             if i in self._flashes:
                 self._flashes[i].draw(target)

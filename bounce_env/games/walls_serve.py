@@ -1,0 +1,95 @@
+"""How the game of walls begins each ball: where it is launched, and where its target is."""
+
+import math
+
+from bounce_env.engine.disturb import place
+from bounce_env.engine.jit import Table, function, routine
+from bounce_env.engine.layout import State, Tables
+from bounce_env.engine.loop import restart, resume, run
+from bounce_env.games.episode import Worlds
+from bounce_env.games.streams import LAUNCHES, TARGETS, uniform
+from bounce_env.games.walls_rules import (
+    BALL_FRAMES,
+    LAUNCH_SPEED,
+    LAUNCH_X,
+    LAUNCH_Y,
+    TARGET_CLEAR,
+    TRIES,
+    Rules,
+)
+
+
+@routine
+def serve(rules: Rules, worlds: Worlds, w: int) -> None:
+    """Launch the next ball, the wall as it was at first, with its target where the ball does not get by itself.
+
+    Whether it does is tried out: the ball is played to its end with the wall at rest.
+    """
+    state, tables, episode = worlds.state, worlds.tables, worlds.episodes[w]
+    world = state.worlds[w]
+    bounces, speed_capped = world.bounces, world.speed_capped
+    for attempt in range(TRIES):
+        x, y = launch(rules, worlds, w)
+        if draw_target(rules, worlds, w, attempt, x, y):
+            launch(rules, worlds, w)  # now its flight is planned with the target in its place
+            resume(state, w)
+            advance(state, tables, w, BALL_FRAMES / rules.fps, rules.max_events)
+            if state.hits[w, rules.courts[world.scene].target] == 0:
+                break
+    launch(rules, worlds, w)
+    worlds.memory[w].born = episode.frames
+    world.bounces, world.speed_capped = bounces, speed_capped
+
+
+@routine
+def advance(state: State, tables: Tables, w: int, until: float, max_events: int) -> int:
+    """Process the events of world `w` up to an instant [s] since its ball was launched; see `engine.loop.run`."""
+    return run(state, tables, w, until, 0.0, max_events, None)
+
+
+@function
+def launch(rules: Rules, worlds: Worlds, w: int) -> tuple[float, float]:
+    """Begin anew with the ball in flight: as its seed says or, the first one, `worlds.start`; returns where [m]."""
+    state, start, episode = worlds.state, worlds.start, worlds.episodes[w]
+    restart(state, worlds.tables, w)
+    court = rules.courts[state.worlds[w].scene]
+    number = 16 * episode.ball
+    share = LAUNCH_X[0] + (LAUNCH_X[1] - LAUNCH_X[0]) * uniform(episode.seed, LAUNCHES, number)
+    x, y = court.x + share * court.width, court.y + LAUNCH_Y * court.height
+    vx, vy = LAUNCH_SPEED * (2.0 * uniform(episode.seed, LAUNCHES, number + 1) - 1.0), 0.0
+    # Of later balls of the episode `start` says nothing: it is for one call of a reset only.
+    if not math.isnan(start[w, 0]):
+        x, y = start[w, 0], start[w, 1]
+    if not math.isnan(start[w, 2]):
+        vx, vy = start[w, 2], start[w, 3]
+    place(state, worlds.tables, w, 0, x, y, vx, vy)
+    return x, y
+
+
+@function
+def draw_target(rules: Rules, worlds: Worlds, w: int, attempt: int, x: float, y: float) -> bool:
+    """Put the target anywhere on the field; False if that is too near to (x, y) [m], where the ball is launched."""
+    tables, episode, scene = worlds.tables, worlds.episodes[w], worlds.state.worlds[w].scene
+    court = rules.courts[scene]
+    radius = target_of(tables.rings, scene, court.ring)[2]
+    number = 256 * episode.ball + 2 * attempt
+    tx = court.x + radius + (court.width - 2.0 * radius) * uniform(episode.seed, TARGETS, number)
+    ty = court.y + radius + (court.height - 2.0 * radius) * uniform(episode.seed, TARGETS, number + 1)
+    move_target(tables.rings, scene, court.ring, tx, ty)
+    clear = TARGET_CLEAR * court.across
+    return (tx - x) * (tx - x) + (ty - y) * (ty - y) > clear * clear
+
+
+@function
+def target_of(rings: Table, scene: int, ring: int) -> tuple[float, float, float]:
+    """Centre and radius of the target: x, y, radius [m]."""
+    if rings is None:
+        return 0.0, 0.0, 0.0
+    return rings[scene, ring].x, rings[scene, ring].y, rings[scene, ring].radius
+
+
+@function
+def move_target(rings: Table, scene: int, ring: int, x: float, y: float) -> None:
+    """Put the target somewhere else; a ball is to be placed after this."""
+    if rings is not None:
+        rings[scene, ring].x, rings[scene, ring].y = x, y

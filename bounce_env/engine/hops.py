@@ -65,14 +65,16 @@ def _keep_off(state: State, w: int, k: int, ledger: Table) -> None:
 def _leave_part(state: State, parts: Table, w: int, k: int, ledger: Table) -> None:
     """Let a ball leave a part that it touches with the smallest rebound: one small hop, as along a curve.
 
-    Between a part that moves and something else it may be pressed on both and close on neither.
+    Between a part that moves and something else it may be pressed on both and close on neither. What it leaves already
+    is not what it was told of.
     """
     if parts is None:
         return
     ball, index = state.balls[w, k], -1
     for i in range(ball.touched):
         touch = state.touches[w, i]
-        if touch.part >= 0 and (index < 0 or towards(touch) > towards(state.touches[w, index])):
+        leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
+        if touch.part >= 0 and not leaving and (index < 0 or towards(touch) > towards(state.touches[w, index])):
             index = i
     if index < 0:
         return

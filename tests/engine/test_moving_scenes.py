@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 from conftest import soak_count
-from moving_scenes import command_at_random, moving_scene, start
+from moving_scenes import MAX_SPEED, command_at_random, moving_scene, start
 from stability_case import new_world
 
 from bounce_env import Scene, Wall
@@ -31,13 +31,14 @@ def overlap(world: World) -> float:
 def test_moving_scenes() -> None:
     """Soak: 10^5 scenes with 1 to 5 balls, 20 s each; a command before every piece of them.
 
-    What uses up its budget does so in due time: next to never does time stand still.
+    What uses up its budget does so in due time, but for a few in ten thousand: balls that bounce without loss, or from
+    a kick, in a gap as small as rounding.
     """
     counts: Counter[str] = Counter()
-    deepest, jams = -1.0, list[int]()
+    deepest, fastest, jams = -1.0, 0.0, list[int]()
     for seed in range(soak_count(150, 100_000)):
         if seed % 1000 == 0:
-            print(seed, dict(counts), f"deepest {deepest:.2g} m", jams, flush=True)  # noqa: T201
+            print(seed, dict(counts), f"deepest {deepest:.2g} m, fastest {fastest:.5g} m/s", jams, flush=True)  # noqa: T201
         rng = np.random.default_rng(seed)
         scene = moving_scene(rng)
         world = new_world(scene, balls=int(rng.integers(1, 6)))
@@ -49,6 +50,7 @@ def test_moving_scenes() -> None:
             command_at_random(rng, world)
             world.advance(float(rng.choice([0.0078125, 0.125, 0.5, 2.0])), max_events=EVENTS)
             assert np.isfinite(world.velocity).all(), seed
+            fastest = max(fastest, np.hypot(*world.velocity.T).max())
             deepest = max(deepest, overlap(world))
             assert deepest <= 1e-9, seed
             statuses = set(world.status.tolist())
@@ -60,8 +62,9 @@ def test_moving_scenes() -> None:
                 jams += [seed] if world.time <= before + 1e-7 else []
                 break
         counts["budget" if BUDGET in seen else "crushed" if CRUSHED in seen else "ok"] += 1
-    print(dict(counts), f"deepest {deepest:.2g} m, jams {jams}")  # noqa: T201
-    assert len(jams) <= 1e-4 * counts.total(), jams
+    print(dict(counts), f"deepest {deepest:.2g} m, fastest {fastest:.5g} m/s, jams {jams}")  # noqa: T201
+    assert fastest <= 1.01 * MAX_SPEED  # it may fall a little faster
+    assert len(jams) <= 5e-4 * counts.total(), jams
     # Piles of balls and slow rolling, all of it in small hops.
     assert counts["budget"] <= 0.1 * counts.total()
 

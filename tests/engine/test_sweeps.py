@@ -21,17 +21,18 @@ REACH = 4.0  # m: the ball starts no further away
 
 
 def gap(t, ball, angle, spin, drift, back, front, reach):
-    """Distance of a ball from a capsule's surface at times `t`, long doubles.
+    """Distance of a ball from a capsule's surface at times `t`, as precise as these are.
 
     The core runs from `back` to `front` along a line through a point that moves at `drift` and turns at `spin`.
     """
-    x, y, vx, vy, gx, gy = map(np.longdouble, ball)
-    turned = np.longdouble(angle) + np.longdouble(spin) * t
+    real = t.dtype.type
+    x, y, vx, vy, gx, gy = map(real, ball)
+    turned = real(angle) + real(spin) * t
     ux, uy = np.cos(turned), np.sin(turned)
-    px = x + (vx - np.longdouble(drift[0])) * t + gx * t * t / 2
-    py = y + (vy - np.longdouble(drift[1])) * t + gy * t * t / 2
-    along = np.clip(px * ux + py * uy, np.longdouble(back), np.longdouble(front))
-    return np.hypot(px - along * ux, py - along * uy) - np.longdouble(reach)
+    px = x + (vx - real(drift[0])) * t + gx * t * t / 2
+    py = y + (vy - real(drift[1])) * t + gy * t * t / 2
+    along = np.clip(px * ux + py * uy, real(back), real(front))
+    return np.hypot(px - along * ux, py - along * uy) - real(reach)
 
 
 def start(rng):
@@ -51,10 +52,14 @@ def start(rng):
 
 
 def check(found, horizon, gap_at, size, label):
-    """No sample before the hit is inside; at the hit the surface is touched, and passed right after."""
+    """No sample before the hit is inside; at the hit the surface is touched, and passed right after.
+
+    Of what doubles show to be far from it no sample is taken in extended precision, too.
+    """
     end = found if found < math.inf else horizon
     times = np.linspace(np.longdouble(0), np.longdouble(end), SAMPLES)
-    assert gap_at(times).min() >= -1e-9 * size, label
+    near = times[gap_at(times.astype(float)) < 1e-6 * size]
+    assert not near.size or gap_at(near).min() >= -1e-9 * size, label
     if found < math.inf:
         assert abs(gap_at(np.longdouble(found))) <= 1e-9 * size, label
         after = np.longdouble(found) + np.longdouble(horizon) * np.longdouble(10.0) ** np.arange(-12, 1)
@@ -123,12 +128,13 @@ def sliding_capsule(rng):
 
 def wall_gap(t, ball, ends, speeds, reach):
     """Distance of a ball from a wall, whose two ends start at `ends` and move at `speeds`, at times `t`."""
-    x, y, vx, vy, gx, gy = map(np.longdouble, ball)
-    ax, ay, bx, by = (p + np.longdouble(v) * t for p, v in zip(ends.ravel(), speeds.ravel(), strict=True))
+    real = t.dtype.type
+    x, y, vx, vy, gx, gy = map(real, ball)
+    ax, ay, bx, by = (p + real(v) * t for p, v in zip(ends.ravel(), speeds.ravel(), strict=True))
     dx, dy = bx - ax, by - ay
     px, py = x + vx * t + gx * t * t / 2 - ax, y + vy * t + gy * t * t / 2 - ay
-    share = np.clip((px * dx + py * dy) / (dx * dx + dy * dy), np.longdouble(0), np.longdouble(1))
-    return np.hypot(px - share * dx, py - share * dy) - np.longdouble(reach)
+    share = np.clip((px * dx + py * dy) / (dx * dx + dy * dy), real(0), real(1))
+    return np.hypot(px - share * dx, py - share * dy) - real(reach)
 
 
 def stretching_wall(rng):

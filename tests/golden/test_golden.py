@@ -20,7 +20,7 @@ GOLDEN = {
     "Bounce/Paddle-v0": "882cd901166dabf4fe8977cd69258c1e6eafc5e7b76ef6453636773070917294",
     "Bounce/Pinball-v0": "99e377fbe90eb02940dd88caac1017fa650a6ce0338741c78b834216c7b9d61a",
 }
-TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0}
+TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0, "Bounce/Walls-v0": 8.0}
 
 WORLDS, STEPS = 64, 600
 ROOT = Path(__file__).resolve().parents[2]

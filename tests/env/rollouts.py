@@ -10,7 +10,7 @@ from gymnasium.vector import SyncVectorEnv, VectorEnv
 
 from bounce_env.registration import ENTRIES
 
-PADDLE, PINBALL = "Bounce/Paddle-v0", "Bounce/Pinball-v0"
+PADDLE, PINBALL, WALLS = "Bounce/Paddle-v0", "Bounce/Pinball-v0", "Bounce/Walls-v0"
 MODES = ("NEXT_STEP", "SAME_STEP", "DISABLED")
 KINDS = [
     {"action": action, "repeat_action_probability": p} for action, p in product(("continuous", "discrete"), (0.0, 0.25))
@@ -18,7 +18,10 @@ KINDS = [
 PINBALL_KINDS = [
     {"action": action, "repeat_action_probability": p} for action, p in product(("discrete", "buttons"), (0.0, 0.25))
 ]
-KINDS_OF = {PADDLE: KINDS, PINBALL: PINBALL_KINDS}
+WALLS_KINDS = [
+    {"reward": reward, "repeat_action_probability": p} for reward, p in product(("sparse", "dense"), (0.0, 0.25))
+]
+KINDS_OF = {PADDLE: KINDS, PINBALL: PINBALL_KINDS, WALLS: WALLS_KINDS}
 VARIANTS = [(entry.id, kwargs) for entry in ENTRIES for kwargs in KINDS_OF[entry.id]]
 
 
@@ -26,7 +29,7 @@ def name(value: object) -> str | None:
     """How pytest calls a variant's kwargs."""
     if isinstance(value, dict):
         sticky = "sticky" if value["repeat_action_probability"] else "plain"
-        return f"{value['action']}-{sticky}{'-levels' if 'num_levels' in value else ''}"
+        return f"{value.get('action') or value['reward']}-{sticky}{'-levels' if 'num_levels' in value else ''}"
     return None
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import soak_count
 from gymnasium.vector import AutoresetMode
-from rollouts import MODES, PADDLE, PINBALL, VARIANTS, assert_same, make_sync, make_vec, name, scripted
+from rollouts import MODES, PADDLE, PINBALL, VARIANTS, WALLS, assert_same, make_sync, make_vec, name, scripted
 
 from bounce_env.games.kernels import reset_worlds, step_worlds
 from bounce_env.registration import ENTRIES
@@ -15,7 +15,11 @@ from bounce_env.registration import ENTRIES
 WORLDS = 5
 SEED = 40
 SHORT = 1.5  # seconds: some episodes end here, some at the drain
-PLAYED = {PADDLE: {"time_limit": SHORT}, PINBALL: {"time_limit": 9.0, "balls": 1}}  # for the same reason
+PLAYED = {  # for the same reason
+    PADDLE: {"time_limit": SHORT},
+    PINBALL: {"time_limit": 9.0, "balls": 1},
+    WALLS: {"time_limit": 3.5, "balls": 2},
+}
 
 
 def reset_where(envs, ended):
@@ -32,7 +36,7 @@ def test_equals_gymnasiums_vector_env_over_single_envs(env_id, kwargs, mode):
     reset = theirs.reset(seed=SEED)
     for envs in ours:
         assert_same(envs.reset(seed=SEED), reset, "reset")
-    ends = {"drained": 0, "time_limit": 0}
+    ends = dict.fromkeys(("all_played" if env_id == WALLS else "drained", "time_limit"), 0)
     for t, actions in enumerate(scripted(theirs.action_space, soak_count(300 if env_id == PADDLE else 1500, 20000))):
         step = theirs.step(actions)
         ended = step[2] | step[3]

@@ -6,7 +6,7 @@ import pickle
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import KINDS, PADDLE, PINBALL, assert_same, make_vec, name, scripted
+from rollouts import KINDS, PADDLE, PINBALL, WALLS, assert_same, make_vec, name, scripted
 
 from bounce_env.sb3 import BounceVecEnv
 
@@ -109,7 +109,7 @@ def test_an_open_window_is_not_copied(copied, monkeypatch):
     env.close(), twin.close()
 
 
-@pytest.mark.parametrize("env_id", [PADDLE, PINBALL])
+@pytest.mark.parametrize("env_id", [PADDLE, PINBALL, WALLS])
 def test_a_restored_state_goes_on_to_the_same_bits(env_id):
     """In the worlds that it came from, and, row by row, in those of another batch."""
     envs, other = (make_vec(4, "SAME_STEP", env_id, time_limit=9.0) for _ in range(2))

@@ -20,7 +20,7 @@ GOLDEN = {
     "Bounce/Paddle-v0": "882cd901166dabf4fe8977cd69258c1e6eafc5e7b76ef6453636773070917294",
     "Bounce/Pinball-v0": "6fa4773faadb532d1aed643306c86e43faab21f6bb429235ace1a4150b90a2dc",
 }
-TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0}
+TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0, "Bounce/Walls-v0": 8.0}
 
 WORLDS, STEPS = 64, 600
 ROOT = Path(__file__).resolve().parents[2]

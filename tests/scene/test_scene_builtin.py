@@ -24,7 +24,7 @@ def elements(scene: Scene, spec: type) -> list:
 
 
 def test_which_there_are():
-    assert builtin_scenes() == ("box", "guides", "paddle", "paddle_levels", "pegs", "pinball")
+    assert builtin_scenes() == ("box", "guides", "paddle", "paddle_levels", "pegs", "pinball", "walls")
 
 
 @pytest.mark.parametrize("spec", [Scene, Ball, *get_args(Element)], ids=lambda spec: spec.__name__)

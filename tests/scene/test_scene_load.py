@@ -328,7 +328,7 @@ def test_a_source_that_is_neither_name_nor_path(source):
 def test_an_unknown_name_lists_the_built_in_scenes(name):
     with pytest.raises(SceneError) as caught:
         load_scene(name)
-    known = "box, guides, paddle, paddle_levels, pegs, pinball"
+    known = "box, guides, paddle, paddle_levels, pegs, pinball, walls"
     assert str(caught.value) == f"scene {name!r}: must be one of {known}, or the path of a .toml file"
 
 

@@ -1,10 +1,12 @@
 """Stable-Baselines3's algorithms by name, and what a config may say of each: RL Zoo's keys with SB3's defaults."""
 
-from typing import Any, ClassVar, Literal, TypeAlias
+import ast
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, field_serializer, model_validator
 from stable_baselines3 import DQN, PPO, SAC
 from stable_baselines3.common.utils import LinearSchedule
+from torch import nn
 
 from agents.config import Count, Flag, Layers, NotNegative, Number, Positive, Schedule, Share, Strict
 
@@ -29,9 +31,25 @@ class Hyperparameters(Strict):
         return kwargs | {key: as_schedule(kwargs[key]) for key in self.schedules}
 
 
-class PPOPolicyKwargs(Strict):
-    """The network; what SB3's MlpPolicy takes and YAML can say. `net_arch`: units of the hidden layers."""
+def from_text(value: Any) -> Any:
+    """The mapping that RL Zoo's text "dict(net_arch=[64], activation_fn=nn.ReLU)" means; another value as it is.
 
+    Nothing is evaluated: values must be literals, or names such as nn.ReLU, which stay text.
+    """
+    try:
+        call = ast.parse(value, mode="eval").body
+        if not isinstance(call, ast.Call) or ast.unparse(call.func) != "dict" or call.args:
+            return value
+        names = {k.arg: ast.unparse(k.value) for k in call.keywords if isinstance(k.value, ast.Attribute)}
+        return {k.arg: names.get(k.arg) or ast.literal_eval(k.value) for k in call.keywords}
+    except (TypeError, SyntaxError, ValueError):
+        return value
+
+
+class PPOPolicyKwargs(Strict):
+    """The network; what SB3's MlpPolicy takes. `net_arch`: units of the hidden layers."""
+
+    activation_fn: Literal["nn.Tanh", "nn.ReLU"] = "nn.Tanh"
     net_arch: Layers = Field(default=[64, 64])
     log_std_init: Number = 0.0
     ortho_init: Flag = True
@@ -43,7 +61,7 @@ class PPOHyperparameters(Hyperparameters):
     algorithm = PPO
     schedules = ("learning_rate", "clip_range", "clip_range_vf")
 
-    policy_kwargs: PPOPolicyKwargs = PPOPolicyKwargs()
+    policy_kwargs: Annotated[PPOPolicyKwargs, BeforeValidator(from_text)] = PPOPolicyKwargs()
     n_steps: Count = 2048
     batch_size: Count = 64
     n_epochs: Count = 10
@@ -63,6 +81,17 @@ class PPOHyperparameters(Hyperparameters):
         if (self.n_envs * self.n_steps) % self.batch_size:
             raise ValueError(f"batch_size must divide n_envs * n_steps = {self.n_envs * self.n_steps}")
         return self
+
+    @field_serializer("policy_kwargs")
+    def _as_text(self, kwargs: PPOPolicyKwargs) -> str:
+        """As RL Zoo reads it, which takes a class in no other way."""
+        words = {name: value if name == "activation_fn" else repr(value) for name, value in kwargs}
+        return f"dict({', '.join(f'{name}={word}' for name, word in words.items())})"
+
+    def for_sb3(self) -> dict[str, Any]:
+        """See `Hyperparameters`."""
+        activation = getattr(nn, self.policy_kwargs.activation_fn.removeprefix("nn."))
+        return super().for_sb3() | {"policy_kwargs": self.policy_kwargs.model_dump() | {"activation_fn": activation}}
 
 
 class DQNPolicyKwargs(Strict):

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 import yaml
 from stable_baselines3 import PPO
+from torch import nn
 
 from agents.algorithms import ALGORITHMS, PPOHyperparameters
 from agents.command import Refused
-from agents.config import load_config
+from agents.config import checked, load_config
 from agents.task import Task
 
 ROOT = Path(__file__).parents[2]
@@ -46,7 +47,7 @@ def refusal(tmp_path: Path, entry: str, **overrides: object) -> str:
         ("{n_timesteps: 100, learning_rate: __import__('os')}", ["learning_rate", "a number > 0"]),
         ("{n_timesteps: 100, normalize_advantage: 1}", ["normalize_advantage = 1", "true or false"]),
         ("{n_timesteps: 100, policy: CnnPolicy}", ["policy = 'CnnPolicy'", "MlpPolicy"]),
-        ("{n_timesteps: 100, policy_kwargs: 'dict(net_arch=[3])'}", ["policy_kwargs", "must be a mapping"]),
+        ("{n_timesteps: 100, policy_kwargs: 'dict(net_arch=print(3))'}", ["policy_kwargs", "must be a mapping"]),
         ("{n_timesteps: 100, policy_kwargs: {net_arch: [64, 6.5]}}", ["policy_kwargs.net_arch = [64, 6.5]", "pi:"]),
         ("{n_timesteps: 100, policy_kwargs: {arch: [64]}}", ["unknown key 'policy_kwargs.arch'", "net_arch"]),
         ("{n_timesteps: 100, n_envs: 3, n_steps: 5}", ["batch_size must divide n_envs * n_steps = 15"]),
@@ -110,6 +111,16 @@ def test_each_key_is_one_of_sb3_and_its_default_is_sb3s(algo: str) -> None:
     for key in {"lr_schedule", "clip_range"} & set(vars(theirs)):
         assert getattr(model, key)(0.5) == getattr(theirs, key)(0.5)
     assert str(model.policy) == str(theirs.policy)
+
+
+def test_a_network_is_read_from_rl_zoos_text_and_written_as_it() -> None:
+    text = "dict(net_arch=[8, 4], activation_fn=nn.ReLU)"
+    read = checked(PPOHyperparameters, {"n_timesteps": 100, "policy_kwargs": text}, "here")
+    assert read.for_sb3()["policy_kwargs"]["net_arch"] == [8, 4]
+    assert read.for_sb3()["policy_kwargs"]["activation_fn"] is nn.ReLU
+    written = read.model_dump()
+    assert "activation_fn=nn.ReLU" in written["policy_kwargs"]
+    assert checked(PPOHyperparameters, written, "here") == read
 
 
 @pytest.mark.parametrize("algo", ALGORITHMS)

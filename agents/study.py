@@ -54,8 +54,8 @@ STUDIES = (
     Study("Pinball", "Bounce/Pinball-v0", {"ppo": 3}, look_ahead=12),
     Study("Paddle", "Bounce/Paddle-v0", {"ppo": 3, "dqn": 1, "sac": 1}, look_ahead=12),
     Study("Walls", "Bounce/Walls-v0", {"ppo": 3}, look_ahead=12),
-    Study("Paddle, 200 levels", "Bounce/Paddle-v0", {"ppo": 3}, 12, LEVELS),
-    Study("Paddle, unseen levels", "Bounce/Paddle-v0", {"ppo": 3}, 12, LEVELS, UNSEEN),
+    Study("Paddle, 200 levels", "Bounce/Paddle-v0", {"ppo": 1}, 12, LEVELS),
+    Study("Paddle, unseen levels", "Bounce/Paddle-v0", {"ppo": 1}, 12, LEVELS, UNSEEN),
 )
 
 

@@ -35,10 +35,14 @@ TARGETS = {
 
 
 def scripted_actions(env_id: str) -> np.ndarray:
-    """(STEPS, WORLDS) speeds from -1.2 to 1.2 or buttons from 0 to 3, each held for 4 steps, from integers alone."""
-    step, world = np.ogrid[: STEPS // 4, :WORLDS]
-    numbers = (7919 * step + 104729 * world + 31 * step * world) % 97
-    return np.repeat(numbers % 4 if env_id == "Bounce/Pinball-v0" else numbers / 40.0 - 1.2, 4, axis=0)
+    """(STEPS, WORLDS) buttons from 0 to 3 or speeds from -1.2 to 1.2, of walls (STEPS, WORLDS, 4), from integers alone.
+
+    Each is held for 4 steps.
+    """
+    step, world, end = np.ogrid[: STEPS // 4, :WORLDS, : 4 if env_id == "Bounce/Walls-v0" else 1]
+    numbers = (7919 * step + 104729 * world + 31 * step * world + 15485863 * end * (step + 3)) % 97
+    actions = numbers % 4 if env_id == "Bounce/Pinball-v0" else numbers / 40.0 - 1.2
+    return np.repeat(actions if env_id == "Bounce/Walls-v0" else actions[:, :, 0], 4, axis=0)
 
 
 def play(env_id: str) -> tuple[str, int, float]:

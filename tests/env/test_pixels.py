@@ -78,7 +78,7 @@ def test_an_observation_is_what_render_gives_but_for_the_score():
 @pytest.mark.parametrize("mode", MODES)
 def test_a_batch_sees_what_single_environments_see(env_id, options, mode):
     """Frames, final frames of episodes that are over, infos and ends: all as Gymnasium's own vector env has them."""
-    kwargs = {**PIXELS, "time_limit": 1.5, "trail": 0.2}
+    kwargs = {**PIXELS, "time_limit": 1.5, "trail": 0.2, **options}
     ours, theirs = make_vec(3, mode, env_id, **kwargs), make_sync(3, mode, env_id, **kwargs)
     assert_same(ours.reset(seed=7), theirs.reset(seed=7))
     assert ours.observation_space == theirs.observation_space

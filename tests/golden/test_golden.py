@@ -19,6 +19,7 @@ import pytest
 GOLDEN = {
     "Bounce/Paddle-v0": "882cd901166dabf4fe8977cd69258c1e6eafc5e7b76ef6453636773070917294",
     "Bounce/Pinball-v0": "6fa4773faadb532d1aed643306c86e43faab21f6bb429235ace1a4150b90a2dc",
+    "Bounce/Walls-v0": "32b3a39434b8121ea5573ed75362dde336721e19127d8bdec4468dff714e6b03",
 }
 TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0, "Bounce/Walls-v0": 8.0}
 

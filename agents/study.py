@@ -52,10 +52,10 @@ UNSEEN = {"num_levels": 0, "start_level": 1_000_000}
 
 STUDIES = (
     Study("Pinball", "Bounce/Pinball-v0", {"ppo": 3}, look_ahead=12),
-    Study("Paddle", "Bounce/Paddle-v0", {"ppo": 3, "dqn": 1, "sac": 1}, look_ahead=12),
-    Study("Walls", "Bounce/Walls-v0", {"ppo": 3}, look_ahead=12),
-    Study("Paddle, 200 levels", "Bounce/Paddle-v0", {"ppo": 1}, 12, LEVELS),
-    Study("Paddle, unseen levels", "Bounce/Paddle-v0", {"ppo": 1}, 12, LEVELS, UNSEEN),
+    Study("Paddle", "Bounce/Paddle-v0", {"ppo": 3, "dqn": 1, "sac": 1}, look_ahead=8),
+    Study("Walls", "Bounce/Walls-v0", {"ppo": 3}, look_ahead=8),
+    Study("Paddle, 200 levels", "Bounce/Paddle-v0", {"ppo": 1}, 6, LEVELS),
+    Study("Paddle, unseen levels", "Bounce/Paddle-v0", {"ppo": 1}, 6, LEVELS, UNSEEN),
 )
 
 

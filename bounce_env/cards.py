@@ -65,7 +65,7 @@ class PaddleEnv(BounceEnv):
     Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; None: "paddle", or with levels
     "paddle_levels"), `num_levels` (None: no levels), `start_level` (0), `action`
     ("continuous"), `frame_skip` (2, in units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit`
-    (90.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height`
+    (120.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height`
     (of a frame in pixels), `trail` (0.0; seconds of the ball's way, bounces included, that a frame shows, fading),
     `show_bounces` (False; whether `render` shows, after a step with bounces, the last of them in place of the step's
     end). A vector env also takes `num_envs`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
@@ -80,7 +80,7 @@ class PaddleEnv(BounceEnv):
         action: Literal["continuous", "discrete"] = "continuous",
         frame_skip: int = 2,
         repeat_action_probability: float = 0.0,
-        time_limit: float | None = 90.0,
+        time_limit: float | None = 120.0,
         num_levels: int | None = None,
         start_level: int = 0,
         obs: Literal["state", "pixels"] = "state",

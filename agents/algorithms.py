@@ -100,20 +100,25 @@ class DQNPolicyKwargs(Strict):
     net_arch: Layers = Field(default=[64, 64])
 
 
-class DQNHyperparameters(Hyperparameters):
+class OffPolicy(Hyperparameters):
+    """What algorithms have in common that learn from a replay buffer."""
+
+    buffer_size: Count = 1_000_000
+    learning_starts: Count = 100
+    gradient_steps: Count = 1
+    n_steps: Count = 1
+
+
+class DQNHyperparameters(OffPolicy):
     """Deep Q-network; for games with a discrete action."""
 
     algorithm = DQN
 
     policy_kwargs: DQNPolicyKwargs = DQNPolicyKwargs()
     learning_rate: Schedule = 1e-4
-    buffer_size: Count = 1_000_000
-    learning_starts: Count = 100
     batch_size: Count = 32
     tau: Share = 1.0
     train_freq: Count = 4
-    gradient_steps: Count = 1
-    n_steps: Count = 1
     target_update_interval: Count = 10_000
     exploration_fraction: Share = 0.1
     exploration_initial_eps: Share = 1.0
@@ -127,20 +132,16 @@ class SACPolicyKwargs(Strict):
     net_arch: Layers = Field(default=[256, 256])
 
 
-class SACHyperparameters(Hyperparameters):
+class SACHyperparameters(OffPolicy):
     """Soft actor-critic; for games with a continuous action."""
 
     algorithm = SAC
 
     policy_kwargs: SACPolicyKwargs = SACPolicyKwargs()
     learning_rate: Schedule = 3e-4
-    buffer_size: Count = 1_000_000
-    learning_starts: Count = 100
     batch_size: Count = 256
     tau: Share = 0.005
     train_freq: Count = 1
-    gradient_steps: Count = 1
-    n_steps: Count = 1
     target_update_interval: Count = 1
 
 

@@ -17,8 +17,8 @@ from agents.curve import Curve, Point
 from agents.runs import Run
 from agents.task import training_seed
 
-MOST_POINTS = 1000
-"""Of a learning curve."""
+MOST_POINTS = 100
+"""Of a learning curve: each the mean of some tens of episodes, or more."""
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 

@@ -4,17 +4,19 @@ import json
 import multiprocessing
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from agents.algorithms import ALGORITHMS
 from agents.baselines import BASELINES
 from agents.command import Refused, check_range, run, say
+from agents.config import load_config
 from agents.curve import Curve
 from agents.evaluate import play
 from agents.files import write_text
@@ -54,9 +56,25 @@ STUDIES = (
     Study("Pinball", "Bounce/Pinball-v0", {"ppo": 3}, look_ahead=12),
     Study("Paddle", "Bounce/Paddle-v0", {"ppo": 3, "dqn": 1, "sac": 1}, look_ahead=8),
     Study("Walls", "Bounce/Walls-v0", {"ppo": 3}, look_ahead=8),
-    Study("Paddle, 200 levels", "Bounce/Paddle-v0", {"ppo": 1}, 6, LEVELS),
-    Study("Paddle, unseen levels", "Bounce/Paddle-v0", {"ppo": 1}, 6, LEVELS, UNSEEN),
+    Study("Paddle, 200 levels", "Bounce/Paddle-v0", {"ppo": 3}, 6, LEVELS),
+    Study("Paddle, unseen levels", "Bounce/Paddle-v0", {"ppo": 3}, 6, LEVELS, UNSEEN),
 )
+
+
+class Training(NamedTuple):
+    """An agent to be trained. kwargs: of the environment, as JSON; {} for what the config says."""
+
+    env_id: str
+    kwargs: str
+    algo: str
+    seed: int
+
+    @property
+    def name(self) -> str:
+        """Of its folder."""
+        game = self.env_id.removeprefix("Bounce/").rsplit("-v", 1)[0].lower()
+        kwargs = "".join(f"-{key}={value}" for key, value in json.loads(self.kwargs).items())
+        return f"{game}{kwargs}-{self.algo}-{self.seed}"
 
 
 @dataclass(frozen=True)
@@ -83,104 +101,97 @@ class StudyOptions:
     """Folder with the hyperparameters, <algo>.yml."""
     processes: int = 2
     """Trainings, and then evaluations, side by side."""
-    steps: int | None = None
-    """Environment steps of each training. Default: what the configs say."""
 
 
 def study(options: StudyOptions, studies: Sequence[Study] = STUDIES) -> int:
     """Train PPO with three seeds on each game, DQN and SAC once, and measure them and all baselines.
 
     Writes results.md (a table: mean score, its 95 % interval over trainings and episodes, normalised score, steps and
-    seconds of a training), results.json and learning_curves.png. At most an hour on two cores.
+    seconds of a training), results.json and learning_curves.png, anew after each game. At most an hour on two cores.
     """
     check_range("episodes", options.episodes, 2)
     check_range("processes", options.processes, 1)
+    trainings = {training: None for one in studies for training in trainings_of(one)}  # each once, in this order
     context = multiprocessing.get_context("spawn")  # a forked child would inherit torch's threads
     with ProcessPoolExecutor(options.processes, mp_context=context) as pool:
-        trainings: dict[Any, Study] = {}
-        for one in studies:
-            for algo, seed in runs_of(one):
-                trainings.setdefault((one.env_id, *kwargs_key(one), algo, seed), one)
-        say(
-            f"training {len(trainings)} agents, {options.processes} at a time; their output: {options.output}/*/log.txt"
-        )
-        made = {key: pool.submit(train_one, one, key[-2], key[-1], options) for key, one in trainings.items()}
-        folders = {}
-        for key, future in made.items():
-            folders[key] = future.result()
-            say(f"trained: {folders[key]}")
-        rows = [row for one in studies for row in measured(one, folders, options.episodes, pool)]
-    panels = [panel(one, folders, rows) for one in studies if one.test_kwargs is None]
-    draw(panels, options.output / "learning_curves.png")
-    write_text(options.output / "results.md", table(rows))
-    content = {"versions": versions(), "rows": [asdict(row) for row in rows]}
-    write_text(options.output / "results.json", json.dumps(content, indent=2) + "\n")
+        say(f"training {len(trainings)} agents; each writes to {options.output}/<training>/log.txt")
+        made = {training: pool.submit(train_one, training, options) for training in trainings}
+        folders = {training: future.result() for training, future in made.items()}
+        say("measuring them and the baselines")
+        asked = [scores_of(one, folders, options.episodes, pool) for one in studies]
+        rows: list[Row] = []
+        for k, (one, scores) in enumerate(zip(studies, asked, strict=True), start=1):
+            rows += measured(one, {name: [f.result() for f in each] for name, each in scores.items()}, folders)
+            write_results(options.output, rows, [panel(s, folders, rows) for s in studies[:k] if s.test_kwargs is None])
     say(table(rows).rstrip())
     say(f"all in {options.output}")
     return 0
 
 
-def kwargs_key(one: Study) -> tuple[str]:
-    """What trainings of one environment id differ in."""
-    return (json.dumps(dict(one.train_kwargs), sort_keys=True),)
+def write_results(output: Path, rows: list[Row], panels: list[Panel]) -> None:
+    """Write the table, as Markdown and JSON, and the picture."""
+    draw(panels, output / "learning_curves.png")
+    write_text(output / "results.md", table(rows))
+    content = {"versions": versions(), "rows": [asdict(row) for row in rows]}
+    write_text(output / "results.json", json.dumps(content, indent=2) + "\n")
 
 
-def runs_of(one: Study) -> Iterator[tuple[str, int]]:
-    """Algorithm and seed of each training."""
-    for algo, seeds in one.agents.items():
-        for seed in range(seeds):
-            yield algo, seed
+def trainings_of(one: Study) -> list[Training]:
+    """What a study needs to have trained."""
+    kwargs = json.dumps(dict(one.train_kwargs), sort_keys=True)
+    return [Training(one.env_id, kwargs, algo, seed) for algo, seeds in one.agents.items() for seed in range(seeds)]
 
 
-def train_one(one: Study, algo: str, seed: int, options: StudyOptions) -> Path:
-    """Train an agent in a process of its own; returns its run folder. Raises Refused where the training failed."""
-    name = "-".join(one.title.lower().replace(",", "").split())
-    home = options.output / f"{name}-{algo}-{seed}"
-    finished = sorted(home.glob("*/summary.json"))
-    if finished:
-        return finished[-1].parent
-    home.mkdir(parents=True, exist_ok=True)
-    command = [sys.executable, "-m", "agents.train", "--env-id", one.env_id, "--algo", algo, "--seed", str(seed)]
-    command += ["--config", str(options.configs / f"{algo}.yml")]
-    command += ["--output", str(home), "--no-progress-bar", "--episodes", "100"]
-    command += ["--steps", str(options.steps)] if options.steps else []
-    command += ["--env-kwargs", json.dumps(dict(one.train_kwargs))] if one.train_kwargs else []
-    with (home / "log.txt").open("w", encoding="utf-8") as log:
-        code = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False).returncode
-    finished = sorted(home.glob("*/summary.json"))
-    if code or not finished:
-        raise Refused(f"{home}: the training ended with {code}; see log.txt")
-    return finished[-1].parent
+def train_one(training: Training, options: StudyOptions) -> Path:
+    """Train an agent in a process of its own, unless it has been; returns its run folder.
+
+    Raises Refused where the training failed, and where one that is there had other hyperparameters.
+    """
+    home, config = options.output / training.name, options.configs / f"{training.algo}.yml"
+    if not list(home.glob("*/summary.json")):
+        home.mkdir(parents=True, exist_ok=True)
+        command = [sys.executable, "-m", "agents.train", "--env-id", training.env_id, "--algo", training.algo]
+        command += ["--seed", str(training.seed), "--config", str(config), "--output", str(home)]
+        command += ["--no-progress-bar", "--episodes", "20"]
+        command += ["--env-kwargs", training.kwargs] if training.kwargs != "{}" else []
+        with (home / "log.txt").open("w", encoding="utf-8") as log:
+            code = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False).returncode
+        if code:
+            raise Refused(f"{home}: the training ended with {code}; see log.txt")
+    folder = sorted(home.glob("*/summary.json"))[-1].parent
+    kwargs = json.loads(training.kwargs)
+    asked = load_config(config, training.env_id, {"env_kwargs": kwargs} if kwargs else {}, ALGORITHMS[training.algo])
+    if open_run(folder).hyperparameters != asked:
+        raise Refused(f"{home}: was trained with other hyperparameters than {config} has now: remove it")
+    return folder
 
 
-def measured(one: Study, folders: Mapping[Any, Path], episodes: int, pool: ProcessPoolExecutor) -> list[Row]:
-    """The rows of a study, the baselines first."""
+def scores_of(
+    one: Study, folders: Mapping[Training, Path], episodes: int, pool: ProcessPoolExecutor
+) -> dict[str, list[Future[Scores]]]:
+    """The scores of each player, the baselines first, one entry for each training."""
     counts = {name: one.look_ahead if name == BEST else episodes for name in BASELINES[one.env_id]}
     scores = {name: [pool.submit(baseline_scores, one, name, count)] for name, count in counts.items()}
-    trainings: dict[str, list[Path]] = {}
-    for algo, seed in runs_of(one):
-        trainings.setdefault(algo, []).append(folders[(one.env_id, *kwargs_key(one), algo, seed)])
-    for algo, paths in trainings.items():
+    for algo in one.agents:
+        paths = [folders[training] for training in trainings_of(one) if training.algo == algo]
         for sampled in (False, True):
-            name = f"{algo.upper()}, {'sampled' if sampled else 'argmax'}"
-            scores[name] = [pool.submit(agent_scores, one, path, episodes, sampled) for path in paths]
-    intervals = {name: bootstrap([future.result() for future in each]) for name, each in scores.items()}
+            futures = [pool.submit(agent_scores, one, path, episodes, sampled) for path in paths]
+            scores[f"{algo.upper()}, {'sampled' if sampled else 'argmax'}"] = futures
+    return scores
+
+
+def measured(one: Study, scores: Mapping[str, list[Scores]], folders: Mapping[Training, Path]) -> list[Row]:
+    """The rows of a study."""
+    intervals = {name: bootstrap(each) for name, each in scores.items()}
     idle, best = intervals[IDLE].mean, intervals[BEST].mean
     rows = []
     for name, interval in intervals.items():
-        paths = trainings.get(name.split(",")[0].lower(), [])
-        summaries = [json.loads((path / "summary.json").read_text(encoding="utf-8")) for path in paths]
         normalised = None if name in (IDLE, BEST) else (interval.mean - idle) / (best - idle)
-        rows.append(
-            Row(
-                one.title,
-                name,
-                interval,
-                normalised,
-                summaries[0]["steps"] if summaries else None,
-                float(np.mean([s["train_seconds"] for s in summaries])) if summaries else None,
-            )
-        )
+        trainings = [training for training in trainings_of(one) if name.startswith(f"{training.algo.upper()},")]
+        summaries = [json.loads((folders[t] / "summary.json").read_text(encoding="utf-8")) for t in trainings]
+        steps = summaries[0]["steps"] if summaries else None
+        seconds = float(np.mean([summary["train_seconds"] for summary in summaries])) if summaries else None
+        rows.append(Row(one.title, name, interval, normalised, steps, seconds))
     return rows
 
 
@@ -196,11 +207,11 @@ def agent_scores(one: Study, folder: Path, episodes: int, sampled: bool) -> Scor
     return play(task, players["trained_sampled" if sampled else "trained"], episodes).scores
 
 
-def panel(one: Study, folders: Mapping[Any, Path], rows: list[Row]) -> Panel:
+def panel(one: Study, folders: Mapping[Training, Path], rows: list[Row]) -> Panel:
     """The learning curves of a study, and its baselines."""
     curves: dict[str, list[Curve]] = {}
-    for algo, seed in runs_of(one):
-        curves.setdefault(algo.upper(), []).append(Curve.read(folders[(one.env_id, *kwargs_key(one), algo, seed)]))
+    for training in trainings_of(one):
+        curves.setdefault(training.algo.upper(), []).append(Curve.read(folders[training]))
     levels = {r.player: r.interval.mean for r in rows if r.study == one.title and r.player in BASELINES[one.env_id]}
     return Panel(one.title, curves, levels)
 

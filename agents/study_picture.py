@@ -39,6 +39,10 @@ def draw(panels: Sequence[Panel], path: Path) -> None:
         figure.savefig(unfinished)
 
 
+def _rounded(score: float) -> str:
+    return f"{score:,.0f}" if abs(score) >= 100.0 else f"{score:.1f}"
+
+
 def _draw(axes: Axes, panel: Panel) -> None:
     for k, (algo, curves) in enumerate(panel.curves.items()):
         for i, curve in enumerate(curves):
@@ -53,7 +57,7 @@ def _draw(axes: Axes, panel: Panel) -> None:
             )
     shown = {name: mean for name, mean in panel.levels.items() if name != LEFT_OUT}
     for k, (name, mean) in enumerate(shown.items(), start=len(panel.curves)):
-        axes.axhline(mean, color=f"C{k}", linestyle="--", linewidth=1.0, label=f"{name}: {mean:.3g}")
+        axes.axhline(mean, color=f"C{k}", linestyle="--", linewidth=1.0, label=f"{name}: {_rounded(mean)}")
     axes.set_title(panel.title)
     axes.set_xlabel("environment steps (millions)")
     axes.set_ylabel("mean score in training (points)")

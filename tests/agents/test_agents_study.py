@@ -10,8 +10,9 @@ from PIL import Image
 from scipy import stats
 
 from agents import study
+from agents.command import Refused
 from agents.intervals import bootstrap
-from agents.study import UNSEEN, Study, StudyOptions
+from agents.study import UNSEEN, Study, StudyOptions, train_one, trainings_of
 
 TINY = """\
 Bounce/Paddle-v0:
@@ -90,6 +91,10 @@ def test_what_is_trained_already_is_not_trained_again(results: Path) -> None:
     options = StudyOptions(output=results / "results", episodes=2, configs=results / "configs")
     assert study.study(options, [replace(STUDIES[0], look_ahead=2)]) == 0
     assert sorted((results / "results").glob("*/*")) == before
+    (training, _) = trainings_of(STUDIES[0])
+    (results / "configs" / "ppo.yml").write_text(TINY.replace("n_epochs: 2", "n_epochs: 3"))
+    with pytest.raises(Refused, match=r"levels.*: was trained with other hyperparameters"):
+        train_one(training, options)
 
 
 def test_the_table_names_every_game() -> None:

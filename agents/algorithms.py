@@ -16,7 +16,7 @@ Model: TypeAlias = PPO | DQN | SAC
 class Hyperparameters(Strict):
     """What all algorithms have in common. `n_timesteps` must be given."""
 
-    algorithm: ClassVar[type[PPO | DQN | SAC]]
+    algorithm: ClassVar[type[Model]]
     schedules: ClassVar[tuple[str, ...]] = ("learning_rate",)
 
     n_timesteps: Count

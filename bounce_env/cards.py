@@ -56,7 +56,7 @@ class PaddleEnv(BounceEnv):
     `snapshot`, and with levels `level`, which `position` needs.
 
     End: terminated when the ball drains; truncated after `time_limit` seconds of play (or, never seen in play, when
-    more than 500 events fall into one step: `end_reason` "budget").
+    more than 10 000 events fall into one step: `end_reason` "budget").
 
     Info: each step `score` (the sum of rewards), `ball` (0) and, with levels, `level`. At an episode's end also
     `end_reason`, `points_bumpers`, `bounces`, `touches` (hits of the paddle), `speed_capped` (bounces at the limit) and

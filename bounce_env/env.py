@@ -94,7 +94,10 @@ class BounceEnv(gym.Env[Observation, Any]):
         """
         snapshot, others = taken_snapshot(seed, options)
         if snapshot is not None:
-            return self.restore_state(snapshot), self._info()
+            observation = self.restore_state(snapshot)
+            if self.render_mode == "human":
+                self.render()
+            return observation, self._info()
         start = start_rows(self._batch.game, 1, others)
         super().reset(seed=seed)
         if seed is not None or not self._seeded:

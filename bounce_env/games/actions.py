@@ -6,8 +6,16 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.jit import function
+
 Controls: TypeAlias = npt.NDArray[np.float64]
 """(worlds, k): what a game's kernel reads."""
+
+
+@function
+def clipped(action: float) -> float:
+    """What a number of a `Continuous` action stands for: a share, -1 to 1."""
+    return min(max(action, -1.0), 1.0)
 
 
 @dataclass(frozen=True)

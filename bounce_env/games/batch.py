@@ -115,7 +115,7 @@ class Batch:
     def _digest(self) -> str:
         """Of all that a state belongs to: who looks ahead clones and restores before every step."""
         game = self.game
-        text = repr((type(game).__name__, game.scenes, game.options, game.rules.limit))
+        text = repr((type(game).__name__, game.scenes, game.options, game.rules.pace.limit))
         return hashlib.sha256(text.encode()).hexdigest()
 
     def end_info(self) -> dict[str, Array]:

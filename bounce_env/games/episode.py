@@ -37,9 +37,6 @@ NEXT_STEP, SAME_STEP, DISABLED = 0, 1, 2
 
 FPS = 60  # frames a second, the unit of `frame_skip` and of sticky actions
 
-# Events in one step of a game; more is a ball that rattles itself to death, and truncates the episode.
-MAX_EVENTS = 500
-
 
 class Results(NamedTuple):
     """What a step returns, per world; written in place by the kernel."""

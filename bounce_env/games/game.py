@@ -1,6 +1,5 @@
 """What every game is to a batch of worlds."""
 
-import math
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -19,7 +18,7 @@ class Game:
 
     Raises SceneError where the scene cannot be read; a game raises ValueError where it cannot be played.
 
-    options: what its user chose. rules: of a type that is a game (`games.rules`).
+    options: what its user chose. rules: of a type that is a game (`games.rules`), with a `pace`.
     observation_low, observation_high: bounds of what is observed.
     field: x_min, y_min, x_max, y_max [m] of where a ball may be launched by the options of a reset.
     targets: the elements, circular sensors, that `begin` and `play` put where they want them.
@@ -67,11 +66,12 @@ class Game:
     def with_step_limit(self, steps: int | None) -> Self:
         """The same game, truncated after `steps` steps if that comes before the time limit."""
         if steps is not None:
-            limit = min(self.rules.limit, float(steps * self.rules.frame_skip))
-            self.rules = self.rules._replace(limit=limit)
+            pace = self.rules.pace
+            limit = min(pace.limit, float(steps * pace.frame_skip))
+            self.rules = self.rules._replace(pace=pace._replace(limit=limit))
         return self
 
 
-def frame_limit(options: Options) -> float:
-    """Frames after which an episode is truncated; infinite for never."""
-    return math.inf if options.time_limit is None else float(round(options.time_limit * FPS))
+def repeated(tables: Tables, worlds: int) -> Tables:
+    """The tables of one scene, a row of each for each world."""
+    return Tables._make(None if table is None else np.repeat(table, worlds, axis=0) for table in tables)

@@ -13,6 +13,7 @@ import numpy as np
 from bounce_env.engine.jit import Record, Table, borrow, from_python, function
 from bounce_env.engine.layout import Array, State, Tables, record
 from bounce_env.engine.parts import offset_at
+from bounce_env.games.field import place_seen
 from bounce_env.games.streams import LAYOUTS, LEVELS, uniform
 from bounce_env.scene import Bumper, Scene, moves
 
@@ -219,8 +220,7 @@ def observe_bumpers(levels: Levels, state: State, tables: Tables, field: Record,
 
 @function
 def _observe_place(field: Record, x: float, y: float, w: int, out: Array, i: int) -> int:
-    out[w, i] = (x - field.x) * field.x_scale - 1.0
-    out[w, i + 1] = (y - field.y) * field.y_scale - 1.0
+    out[w, i], out[w, i + 1] = place_seen(field, x, y)
     return i + 2
 
 

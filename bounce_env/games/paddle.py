@@ -14,7 +14,7 @@ from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, r
 from bounce_env.engine.parts import offset_at
 from bounce_env.engine.trig import sin_cos
 from bounce_env.engine.view import ball_now
-from bounce_env.games.actions import Continuous, Discrete
+from bounce_env.games.actions import Continuous, Discrete, clipped
 from bounce_env.games.episode import (
     DRAINED,
     OUT_OF_BUDGET,
@@ -25,7 +25,8 @@ from bounce_env.games.episode import (
     hold_action,
     open_books,
 )
-from bounce_env.games.game import Game
+from bounce_env.games.field import place_seen, speed_bound
+from bounce_env.games.game import Game, repeated
 from bounce_env.games.levels import (
     NONE,
     bumper_bounds,
@@ -48,7 +49,6 @@ from bounce_env.games.paddle_rules import (
     borrow_rules,
     field_of,
     new_rules,
-    speed_bound,
 )
 from bounce_env.games.rules import is_game
 from bounce_env.games.streams import LAUNCHES, uniform
@@ -61,21 +61,14 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     state = worlds.state
     field = rules.fields[state.worlds[w].scene]
     x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
-    out[w, 0] = (x - field.x) * field.x_scale - 1.0
-    out[w, 1] = (y - field.y) * field.y_scale - 1.0
+    out[w, 0], out[w, 1] = place_seen(field, x, y)
     out[w, 2] = vx * (1.0 / REFERENCE_SPEED)
     out[w, 3] = vy * (1.0 / REFERENCE_SPEED)
     # The product may exceed the ends of the range by its rounding.
     out[w, 4] = min(max(paddle_offset(state, state.motions, field.part, w) * field.rail_scale - 1.0, -1.0), 1.0)
     observe_bumpers(rules.levels, state, worlds.tables, field, w, out, OBSERVATION_SIZE)
-    if rules.repeat > 0.0:
+    if rules.pace.repeat > 0.0:
         out[w, out.shape[1] - 1] = clipped(worlds.held[w, 0])
-
-
-@function
-def clipped(action: float) -> float:
-    """The action as a share of the paddle's greatest speed."""
-    return min(max(action, -1.0), 1.0)
 
 
 @function
@@ -127,15 +120,15 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     clear_hits(state, w)
     resume(state, w)
     part = rules.fields[state.worlds[w].scene].part
-    frames = 1 if rules.repeat > 0.0 else rules.frame_skip
+    frames = 1 if rules.pace.repeat > 0.0 else rules.pace.frame_skip
     code = DONE
-    last = episode.frames + rules.frame_skip
+    last = episode.frames + rules.pace.frame_skip
     while episode.frames < last:
-        hold_action(worlds, actions, w, rules.repeat)
+        hold_action(worlds, actions, w, rules.pace.repeat)
         move(state, tables, state.motions, tables.parts, part, w, clipped(worlds.held[w, 0]))
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
-        code = run(state, tables, w, episode.frames / rules.fps, 0.0, rules.max_events, None)
+        code = run(state, tables, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
         if code != DONE or state.balls[w, 0].status == OUT:
             break
     reward = count_points(rules, worlds, w)
@@ -143,7 +136,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
         episode.end = DRAINED
     elif code != DONE:
         episode.end = OUT_OF_BUDGET
-    elif episode.frames >= rules.limit:
+    elif episode.frames >= rules.pace.limit:
         episode.end = TIME_LIMIT
     episode.score += reward
     return reward
@@ -160,12 +153,12 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     """
     state, tables, results = worlds.state, worlds.tables, worlds.results
     episode, world = worlds.episodes[w], state.worlds[w]
-    frames = episode.frames + rules.frame_skip
-    if episode.end != RUNNING or frames >= rules.limit:
+    frames = episode.frames + rules.pace.frame_skip
+    if episode.end != RUNNING or frames >= rules.pace.limit:
         return False
-    until = frames / rules.fps
+    until = frames / rules.pace.fps
     action = clipped(actions[w, 0])
-    if rules.repeat > 0.0 or not steer(state, tables, tables.parts, rules.fields[world.scene].part, w, action):
+    if rules.pace.repeat > 0.0 or not steer(state, tables, tables.parts, rules.fields[world.scene].part, w, action):
         return False
     if not is_calm(state.balls, state.pairs, state.motions, tables.parts, w, world.scene, until, 0.0):
         return False
@@ -229,7 +222,9 @@ class PaddleGame(Game):
         x, y, width, height = field_of(self.scenes[0])
         self.field = (x, y, x + width, y + height)
         self.actions = Discrete((-1.0, 0.0, 1.0)) if options.action == "discrete" else Continuous(1)
-        speed = speed_bound(self.scenes[0]) / REFERENCE_SPEED
+        scene = self.scenes[0]
+        assert scene.max_speed is not None
+        speed = speed_bound(max(scene.max_speed, LAUNCH_SPEED), scene.gravity, width, height) / REFERENCE_SPEED
         bounds = [1.0, 1.0, speed, speed, 1.0, *bumper_bounds(self.rules.levels)]
         if options.repeat_action_probability > 0.0:
             bounds.append(1.0)
@@ -246,9 +241,10 @@ class PaddleGame(Game):
         if not self.has_levels:
             return self.tables, self.rules
         rules, rows = self.rules, partial(np.repeat, repeats=worlds, axis=0)
-        tables = Tables._make(None if table is None else rows(table) for table in self.tables)
         levels = rules.levels._replace(bumpers=rows(rules.levels.bumpers))
-        return tables, rules._replace(fields=rows(rules.fields), points=rows(rules.points), levels=levels)
+        return repeated(self.tables, worlds), rules._replace(
+            fields=rows(rules.fields), points=rows(rules.points), levels=levels
+        )
 
     def written(self, tables: Tables, rules: Rules) -> tuple[Array, ...]:
         """Where the bumpers of a level are."""

@@ -8,10 +8,9 @@ import numpy as np
 from bounce_env.engine.jit import borrow, function
 from bounce_env.engine.layout import Array, record
 from bounce_env.engine.pack import direction
-from bounce_env.games.episode import FPS, MAX_EVENTS
-from bounce_env.games.game import frame_limit
 from bounce_env.games.levels import Levels, borrow_levels, levels_of
 from bounce_env.games.options import PaddleOptions
+from bounce_env.games.pace import Pace, pace_of
 from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
 
 # The launch: place as shares of the field, so that it fits the scenes of users, too.
@@ -41,11 +40,7 @@ class Rules(NamedTuple):
     fields: Array  # (scenes,) FIELD
     levels: Levels
     points: Array  # (scenes, elements) float64: for a hit of each element
-    fps: float
-    frame_skip: int
-    limit: float  # frames after which an episode is truncated; inf for never
-    repeat: float  # probability per frame that the last action is repeated
-    max_events: int
+    pace: Pace
 
 
 @function
@@ -55,11 +50,7 @@ def borrow_rules(rules: Rules) -> Rules:
         borrow(rules.fields),
         borrow_levels(rules.levels),
         borrow(rules.points),
-        rules.fps,
-        rules.frame_skip,
-        rules.limit,
-        rules.repeat,
-        rules.max_events,
+        rules.pace,
     )
 
 
@@ -101,18 +92,5 @@ def new_rules(scene: Scene, options: PaddleOptions) -> Rules:
         np.array([(x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, paddle, part)], FIELD),
         levels_of(scene, field, options.num_levels, options.start_level),
         np.array([[POINTS * isinstance(e, Bumper) for e in scene.elements]]),
-        float(FPS),
-        options.frame_skip,
-        frame_limit(options),
-        options.repeat_action_probability,
-        MAX_EVENTS,
+        pace_of(options),
     )
-
-
-def speed_bound(scene: Scene) -> float:
-    """The fastest [m/s] that a ball is seen: the cap acts at bounces, and it may fall through the field after one."""
-    _, _, width, height = field_of(scene)
-    gx, gy = scene.gravity
-    assert scene.max_speed is not None
-    fastest = max(scene.max_speed, LAUNCH_SPEED)
-    return math.sqrt(fastest**2 + 2.0 * (abs(gx) * width + abs(gy) * height))

@@ -15,7 +15,6 @@ from bounce_env.engine.view import ball_now
 from bounce_env.games.actions import Buttons, Discrete
 from bounce_env.games.episode import (
     DRAINED,
-    FPS,
     OUT_OF_BUDGET,
     RUNNING,
     TIME_LIMIT,
@@ -24,8 +23,10 @@ from bounce_env.games.episode import (
     hold_action,
     open_books,
 )
-from bounce_env.games.game import Game, frame_limit
+from bounce_env.games.field import speed_bound
+from bounce_env.games.game import Game
 from bounce_env.games.options import PinballOptions
+from bounce_env.games.pace import pace_of
 from bounce_env.games.pinball_points import count_points
 from bounce_env.games.pinball_rules import (
     DUE,
@@ -73,10 +74,6 @@ REWARD_PER_POINT = 1e-3
 REWARD_PER_BALL = -2.0  # for every ball that is lost; the score knows nothing of it
 
 LAUNCH_SPEED = (1.45, 2.4)  # m/s
-
-
-# In one frame. A ball that all but stands on the end of a wall leaves it in more than a thousand tiny hops.
-MAX_EVENTS = 10_000
 
 
 @function
@@ -187,7 +184,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     """
     state, tables, episode, memory = worlds.state, worlds.tables, worlds.episodes[w], worlds.memory[w]
     reward = 0.0
-    frames = rules.frame_skip
+    frames = rules.pace.frame_skip
     clear_hits(state, w)
     while (frames > 0 or memory.serving) and episode.end == RUNNING:
         buttons = 0
@@ -195,13 +192,13 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
             shoot(rules, worlds, w)
         if not memory.serving:
             frames -= 1
-            hold_action(worlds, actions, w, rules.repeat)
+            hold_action(worlds, actions, w, rules.pace.repeat)
             buttons = in_force(rules, worlds, w, int(worlds.held[w, 0]))
         press(rules, worlds, state.motions, tables.parts, w, buttons)
         resume(state, w)
         episode.frames += 1
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
-        code = run(state, tables, w, episode.frames / rules.fps, 0.0, rules.max_events, None)
+        code = run(state, tables, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
         if code != DONE:
             episode.end = OUT_OF_BUDGET
         elif memory.serving:
@@ -214,7 +211,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
                 reward += lose_ball(rules, worlds, w)
             else:
                 mind_time(rules, worlds, w)
-        if episode.end == RUNNING and episode.frames >= rules.limit:
+        if episode.end == RUNNING and episode.frames >= rules.pace.limit:
             episode.end = TIME_LIMIT
     return reward
 
@@ -285,14 +282,14 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     """
     state, episode, memory = worlds.state, worlds.episodes[w], worlds.memory[w]
     world = state.worlds[w]
-    frames = episode.frames + rules.frame_skip
-    if episode.end != RUNNING or frames >= rules.limit or rules.repeat > 0.0:
+    frames = episode.frames + rules.pace.frame_skip
+    if episode.end != RUNNING or frames >= rules.pace.limit or rules.pace.repeat > 0.0:
         return False
     if actions[w, 0] != memory.pressed or memory.serving or memory.tilt > 0.0 or memory.tilted:
         return False
     if frames - memory.scored >= STUCK_FRAMES or not falls_from_high(rules, worlds, w):
         return False
-    until = frames / rules.fps
+    until = frames / rules.pace.fps
     if not is_calm(state.balls, state.pairs, state.motions, worlds.tables.parts, w, world.scene, until, 0.0):
         return False
     hi, lo = world.time_hi, world.time_lo
@@ -347,11 +344,7 @@ class PinballGame(Game):
         layout = layout_of(self.scenes)
         self.rules = Rules(
             layout,
-            float(FPS),
-            options.frame_skip,
-            frame_limit(options),
-            options.repeat_action_probability,
-            MAX_EVENTS,
+            pace_of(options),
             options.balls,
             int(options.nudge),
         )
@@ -379,13 +372,12 @@ class PinballGame(Game):
     def _bounds(
         self, layout: Layout, options: PinballOptions
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-        """Of what is observed: the speed is capped at bounces, and the ball may fall through the table after one."""
+        """Of what is observed."""
         scene = self.scenes[0]
         x0, y0, x1, y1 = self.field
-        gx, gy = scene.gravity
         assert scene.max_speed is not None
         fastest = max(scene.max_speed, LAUNCH_SPEED[1]) + (math.hypot(*NUDGE) if options.nudge else 0.0)
-        speed = math.sqrt(fastest**2 + 2.0 * (abs(gx) * (x1 - x0) + abs(gy) * (y1 - y0))) / REFERENCE_SPEED
+        speed = speed_bound(fastest, scene.gravity, x1 - x0, y1 - y0) / REFERENCE_SPEED
         flippers = int(np.count_nonzero(layout.sides[0]))
         table = layout.tables[0]
         shares = flippers + 8 + int(table["targets"]) + int(table["rollovers"]) + layout.bumpers.shape[1]

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 from bounce_env.engine.jit import borrow, function
 from bounce_env.engine.layout import record
 from bounce_env.games.episode import FPS
+from bounce_env.games.pace import Pace
 from bounce_env.games.table import Layout
 
 LAUNCH_FRAMES = 3 * FPS  # after which a ball counts as in play wherever it is
@@ -48,11 +49,7 @@ class Rules(NamedTuple):
     """What the kernel needs to know of the game beside the scene."""
 
     layout: Layout
-    fps: float
-    frame_skip: int
-    limit: float  # frames after which an episode is truncated; inf for never
-    repeat: float  # probability per frame that the last action is repeated
-    max_events: int
+    pace: Pace
     balls: int
     nudge: int  # 1 where the table can be nudged
 
@@ -71,11 +68,7 @@ def borrow_rules(rules: Rules) -> Rules:
     )
     return Rules(
         borrowed,
-        rules.fps,
-        rules.frame_skip,
-        rules.limit,
-        rules.repeat,
-        rules.max_events,
+        rules.pace,
         rules.balls,
         rules.nudge,
     )

@@ -8,6 +8,7 @@ from bounce_env.engine.layout import Array, State
 from bounce_env.engine.parts import offset_at
 from bounce_env.engine.view import ball_now
 from bounce_env.games.episode import Worlds
+from bounce_env.games.field import place_seen
 from bounce_env.games.pinball_points import FARMED, HIGHEST_MULTIPLIER
 from bounce_env.games.pinball_rules import (
     HOLD_FRAMES,
@@ -36,8 +37,7 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     scene = world.scene
     table = layout.tables[scene]
     x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
-    out[w, 0] = (x - table.x) * table.x_scale - 1.0
-    out[w, 1] = (y - table.y) * table.y_scale - 1.0
+    out[w, 0], out[w, 1] = place_seen(table, x, y)
     out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
     i = observe_flippers(state, state.motions, worlds.tables.parts, layout, w, out, 4)
     out[w, i] = (rules.balls - episode.ball) / rules.balls
@@ -62,7 +62,7 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
         out[w, i] = 1.0 if memory.tilted else memory.tilt / TILT
         out[w, i + 1] = max(NUDGE_FRAMES - (episode.frames - memory.nudged), 0) / NUDGE_FRAMES
         i += 2
-    if rules.repeat > 0.0:
+    if rules.pace.repeat > 0.0:
         code = int(worlds.held[w, 0])
         for bit in range(4 if rules.nudge else 2):
             out[w, i + bit] = (code >> bit) & 1

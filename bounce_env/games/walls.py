@@ -1,8 +1,6 @@
 """The rules of the game of walls: bring each ball to its target with a wall that is dragged by its ends."""
 
 import math
-from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +10,7 @@ from bounce_env.engine.jit import Table, function
 from bounce_env.engine.layout import OUT, Array, State, Tables
 from bounce_env.engine.loop import DONE, clear_hits, resume
 from bounce_env.engine.view import ball_now, core_now
-from bounce_env.games.actions import Continuous
+from bounce_env.games.actions import Continuous, clipped
 from bounce_env.games.episode import (
     ALL_PLAYED,
     OUT_OF_BUDGET,
@@ -22,7 +20,8 @@ from bounce_env.games.episode import (
     begin_episode,
     hold_action,
 )
-from bounce_env.games.game import Game
+from bounce_env.games.field import place_seen, speed_bound
+from bounce_env.games.game import Game, repeated
 from bounce_env.games.options import WallsOptions
 from bounce_env.games.rules import is_game
 from bounce_env.games.walls_rules import (
@@ -42,7 +41,6 @@ from bounce_env.games.walls_rules import (
     borrow_rules,
     field_of,
     new_rules,
-    speed_bound,
 )
 from bounce_env.games.walls_serve import advance, serve, target_of
 
@@ -55,27 +53,15 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     x, y, vx, vy = ball_now(state, tables, w, 0)
     x0, y0, x1, y1 = wall_now(state, tables, w, court.part)
     tx, ty, _ = target_of(tables.rings, state.worlds[w].scene, court.ring)
-    out[w, 0], out[w, 1] = seen(court, x, y)
+    out[w, 0], out[w, 1] = place_seen(court, x, y)
     out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
-    out[w, 4], out[w, 5] = seen(court, x0, y0)
-    out[w, 6], out[w, 7] = seen(court, x1, y1)
-    out[w, 8], out[w, 9] = seen(court, tx, ty)
+    out[w, 4], out[w, 5] = place_seen(court, x0, y0)
+    out[w, 6], out[w, 7] = place_seen(court, x1, y1)
+    out[w, 8], out[w, 9] = place_seen(court, tx, ty)
     out[w, 10] = max(BALL_FRAMES - (episode.frames - worlds.memory[w].born), 0) / BALL_FRAMES
     out[w, 11] = (rules.balls - episode.ball) / rules.balls
     for j in range(out.shape[1] - OBSERVATION_SIZE):
         out[w, OBSERVATION_SIZE + j] = clipped(worlds.held[w, j])
-
-
-@function
-def seen(court: Any, x: float, y: float) -> tuple[float, float]:
-    """A place [m] as it is observed: from -1 to 1 on the field."""
-    return (x - court.x) * court.x_scale - 1.0, (y - court.y) * court.y_scale - 1.0
-
-
-@function
-def clipped(action: float) -> float:
-    """The action as a share of the greatest speed of an end of the wall."""
-    return min(max(action, -1.0), 1.0)
 
 
 @function
@@ -112,18 +98,18 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     before = potential(rules, worlds, w)
     clear_hits(state, w)
     resume(state, w)
-    frames = 1 if rules.repeat > 0.0 else rules.frame_skip
+    frames = 1 if rules.pace.repeat > 0.0 else rules.pace.frame_skip
     code = DONE
-    last = episode.frames + rules.frame_skip
+    last = episode.frames + rules.pace.frame_skip
     while episode.frames < last and code == DONE and state.balls[w, 0].status != layout.CRUSHED:
-        hold_action(worlds, actions, w, rules.repeat)
-        drag(rules, worlds, state.ends, worlds.tables.guides, w, frames / rules.fps)
+        hold_action(worlds, actions, w, rules.pace.repeat)
+        drag(rules, worlds, state.ends, worlds.tables.guides, w, frames / rules.pace.fps)
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
-        until = (episode.frames - worlds.memory[w].born) / rules.fps
-        code = advance(state, worlds.tables, w, until, rules.max_events)
+        until = (episode.frames - worlds.memory[w].born) / rules.pace.fps
+        code = advance(state, worlds.tables, w, until, rules.pace.max_events)
     points = mind_ball(rules, worlds, w, code)
-    if episode.end == RUNNING and episode.frames >= rules.limit:
+    if episode.end == RUNNING and episode.frames >= rules.pace.limit:
         episode.end = TIME_LIMIT
     episode.score += points
     if rules.shaping == 0.0:
@@ -220,7 +206,9 @@ class WallsGame(Game):
         x, y, width, height = field_of(self.scenes[0])
         self.field = (x, y, x + width, y + height)
         self.actions = Continuous(CONTROLS)
-        speed = speed_bound(self.scenes[0]) / REFERENCE_SPEED
+        scene = self.scenes[0]
+        assert scene.max_speed is not None
+        speed = speed_bound(scene.max_speed, scene.gravity, width, height) / REFERENCE_SPEED
         held = [1.0] * CONTROLS if options.repeat_action_probability > 0.0 else []
         self.observation_high = np.array([1.0, 1.0, speed, speed, *[1.0] * 8, *held], np.float32)
         self.observation_low = -self.observation_high
@@ -234,9 +222,8 @@ class WallsGame(Game):
 
     def for_worlds(self, worlds: int) -> tuple[Tables, Rules]:
         """Each world has its own row of every table, for its own target."""
-        rows = partial(np.repeat, repeats=worlds, axis=0)
-        tables = Tables._make(None if table is None else rows(table) for table in self.tables)
-        return tables, self.rules._replace(courts=rows(self.rules.courts))
+        courts = np.repeat(self.rules.courts, worlds, axis=0)
+        return repeated(self.tables, worlds), self.rules._replace(courts=courts)
 
     def written(self, tables: Tables, rules: Rules) -> tuple[Array, ...]:
         """Where the target is."""

@@ -10,8 +10,8 @@ from bounce_env.engine.jit import borrow, function
 from bounce_env.engine.layout import Array, record
 from bounce_env.engine.overlap import cores_at_start, describe, gaps
 from bounce_env.games.episode import FPS
-from bounce_env.games.game import frame_limit
 from bounce_env.games.options import WallsOptions
+from bounce_env.games.pace import Pace, pace_of
 from bounce_env.scene import Arc, Element, Scene, Sensor, Wall
 
 # The launch: place as shares of the field, so that it fits the scenes of users, too.
@@ -26,10 +26,6 @@ BALL_FRAMES = 8 * FPS  # that a ball is played
 REFERENCE_SPEED = 2.0  # m/s; the speed that is observed as 1
 TARGET_CLEAR = 0.25  # of the field's diagonal: a target is no nearer to where its ball is launched
 TRIES = 128  # places drawn for a target, of which the last one stands whatever leads to it
-
-# In one step, and on the way of a ball that is left alone. A ball that all but stands on the end of a wall leaves it in
-# more than a thousand tiny hops.
-MAX_EVENTS = 10_000
 
 OBSERVATION_SIZE = 12
 CONTROLS = 4
@@ -53,11 +49,7 @@ class Rules(NamedTuple):
     """What the kernel needs to know of the game beside the scene."""
 
     courts: Array  # (scenes,) COURT
-    fps: float
-    frame_skip: int
-    limit: float  # frames after which an episode is truncated; inf for never
-    repeat: float  # probability per frame that the last action is repeated
-    max_events: int
+    pace: Pace
     balls: int
     shaping: float  # 1 where the reward is shaped by the distance to the target, otherwise 0
     gamma: float  # of the shaping
@@ -68,11 +60,7 @@ def borrow_rules(rules: Rules) -> Rules:
     """The same rules, borrowed; see `engine.jit.borrow`."""
     return Rules(
         borrow(rules.courts),
-        rules.fps,
-        rules.frame_skip,
-        rules.limit,
-        rules.repeat,
-        rules.max_events,
+        rules.pace,
         rules.balls,
         rules.shaping,
         rules.gamma,
@@ -94,11 +82,7 @@ def new_rules(scene: Scene, options: WallsOptions) -> Rules:
     )  # fmt: skip
     return Rules(
         np.array([court], COURT),
-        float(FPS),
-        options.frame_skip,
-        frame_limit(options),
-        options.repeat_action_probability,
-        MAX_EVENTS,
+        pace_of(options),
         options.balls,
         float(options.reward == "dense"),
         options.gamma,
@@ -213,11 +197,3 @@ def field_of(scene: Scene) -> tuple[float, float, float, float]:
     left, right = min(w.bounds[0] for w in walls), max(w.bounds[2] for w in walls)
     below, above = min(d.bounds[1] for d in drains), max(w.bounds[3] for w in walls)
     return left, below, right - left, above - below
-
-
-def speed_bound(scene: Scene) -> float:
-    """The fastest [m/s] that a ball is seen: the cap acts at bounces, and it may fall through the field after one."""
-    _, _, width, height = field_of(scene)
-    gx, gy = scene.gravity
-    assert scene.max_speed is not None
-    return math.sqrt(scene.max_speed**2 + 2.0 * (abs(gx) * width + abs(gy) * height))

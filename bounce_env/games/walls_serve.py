@@ -33,7 +33,7 @@ def serve(rules: Rules, worlds: Worlds, w: int) -> None:
         if draw_target(rules, worlds, w, attempt, x, y):
             launch(rules, worlds, w)  # now its flight is planned with the target in its place
             resume(state, w)
-            advance(state, tables, w, BALL_FRAMES / rules.fps, rules.max_events)
+            advance(state, tables, w, BALL_FRAMES / rules.pace.fps, rules.pace.max_events)
             if state.hits[w, rules.courts[world.scene].target] == 0:
                 break
     launch(rules, worlds, w)

@@ -29,11 +29,6 @@ FATE = record(
 # A ball is where it was while it is no farther away, for at least so many events.
 EVENTS_IN_PLACE = 8
 
-# Events in a sixtieth of a second, a frame of a game, as many as pinball allows; more is a ball that rattles itself to
-# death. One that all but stands on the end of a wall leaves it in more than a thousand tiny hops.
-STEP_RATE = 60.0
-EVENTS_IN_STEP = 10_000
-
 
 class Watch(NamedTuple):
     """What is looked for. Arrays are by element, those of `reach.with_borders`; `boxes` are `reach.reach_boxes`."""
@@ -46,6 +41,8 @@ class Watch(NamedTuple):
     limit: int  # scores without coming within reach after which a ball is followed no longer
     near: float  # [m] a ball that moves no farther stays in its place
     still: float  # [s] for which it does so before it rests
+    fps: float  # frames of a game a second
+    budget: int  # events in a frame, of which more end a game
 
 
 @function
@@ -96,8 +93,8 @@ def _follow(state: State, tables: Tables, watch: Watch, w: int, start: Array, fa
         fate.run = max(fate.run, streak)
         if (fate.x - x) ** 2 + (fate.y - y) ** 2 > watch.near**2:
             x, y, since, in_place = fate.x, fate.y, fate.time, 0
-        if int(fate.time * STEP_RATE) != step:
-            step, in_step = int(fate.time * STEP_RATE), 0
+        if int(fate.time * watch.fps) != step:
+            step, in_step = int(fate.time * watch.fps), 0
         in_place, in_step = in_place + 1, in_step + 1
         stays = fate.time - since >= watch.still and (in_place > EVENTS_IN_PLACE or ball.contact == HELD)
         fate.end = _end(watch, ball, streak, stays, in_step)
@@ -116,7 +113,7 @@ def _end(watch: Watch, ball: Any, streak: int, stays: bool, in_step: int) -> int
         return ENDLESS
     if stays:
         return RESTS
-    return RATTLES if in_step > EVENTS_IN_STEP else PLAYING
+    return RATTLES if in_step > watch.budget else PLAYING
 
 
 @function

@@ -10,6 +10,8 @@ import numpy.typing as npt
 
 from bounce_env.engine.layout import new_state
 from bounce_env.engine.pack import pack
+from bounce_env.games.episode import FPS
+from bounce_env.games.pace import MAX_EVENTS
 from bounce_env.scene import Bumper, Scene
 from bounce_env.survey.follow import FATE, Fates, Watch, follow_balls
 from bounce_env.survey.inside import inside_of
@@ -99,9 +101,13 @@ def _watch(scene: Scene, elements: int, seconds: float, limit: int) -> Watch:
         limit=ENDLESS_AT * limit,
         near=place_size(scene),
         still=max([STILL, *(_period(e) for e in scene.elements if isinstance(e, Bumper))]),
+        fps=float(FPS),
+        budget=MAX_EVENTS,
     )
 
 
 def _period(bumper: Bumper) -> float:
     """Seconds after which a bumper is where it was, moving the same way; 0 of one that stands."""
-    return 0.0 if bumper.rail_end is None else 2.0 * math.dist(bumper.center, bumper.rail_end) / bumper.speed
+    if bumper.rail_end is None or bumper.speed == 0.0:
+        return 0.0
+    return 2.0 * math.dist(bumper.center, bumper.rail_end) / bumper.speed

@@ -7,7 +7,7 @@ import pytest
 from tables import CUP, POCKET, SOUND, WALLED_IN
 
 from bounce_env import World
-from bounce_env.scene import Scene, Wall
+from bounce_env.scene import Scene, Wall, load_scene
 from bounce_env.survey import Finding, Survey, findings, survey
 from bounce_env.survey.follow import CRUSHES, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
 from bounce_env.survey.reach import reach_boxes
@@ -155,3 +155,10 @@ def test_without_an_inside_a_ball_may_leave():
     assert not result.is_table
     assert (result.fates["end"] == LEFT).any()
     assert not any("leaves" in found.title for found in problems(result))
+
+
+def test_a_bumper_that_stands_on_its_rail_is_a_bumper():
+    """It never comes back to where it was, for it never leaves: no ball waits for it."""
+    scene = load_scene("paddle_levels")
+    still = tuple(replace(e, speed=0.0) if e.name == "bumper_top" else e for e in scene.elements)
+    assert problems(surveyed(replace(scene, elements=still), balls=300)) == []

@@ -197,7 +197,10 @@ def _curved(
             t += wait
         elif sense * rate > 0.0:
             # The polynomial knows the gap through its square only; a step on the distance itself mends the last digits.
-            t = min(max(t - (distance - reach) / rate, start), end)
+            # Where the distance bends within the step there are none to mend: the gap is rounding, the rate next to it.
+            step = (distance - reach) / rate
+            if abs(step * bending(px, py, qx, qy, ax, ay)) <= abs(rate):
+                t = min(max(t - step, start), end)
         if t > after and in_span(arc, moved(x, vx, ax, t), moved(y, vy, ay, t), slack):
             return t
     return math.inf

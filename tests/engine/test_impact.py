@@ -9,11 +9,12 @@ from conftest import soak_count
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from bounce_env.engine import impact
+from bounce_env.engine import arc, impact
 from bounce_env.engine.jit import from_python
 
 capsule_time, circle_time, face_time = map(from_python, (impact.capsule_time, impact.circle_time, impact.face_time))
 falling_time, straight_circle_time = map(from_python, (impact.falling_time, impact.straight_circle_time))
+crossing_time = from_python(arc.crossing_time)
 
 SLACK = 16.0 * 2.0**-52
 coordinate = st.floats(-5.0, 5.0)
@@ -82,6 +83,34 @@ def test_no_circle_is_stepped_over(
         qx, qy = vx + gx * t, vy + gy * t
         # Where it only touches in passing it is told nearest, where nothing closes.
         assert px * qx + py * qy <= 4.0 * slack * math.hypot(qx, qy)
+
+
+@pytest.mark.parametrize("sense", [-1.0, 1.0])
+def test_no_circle_is_stepped_over_from_a_touch(sense: float) -> None:
+    """Just after a bounce from outside (-1) or inside (1) the ball leaves it at any speed, however slow.
+
+    Samples in equal ratios from the start on: hops may be 1e-16 of a second long.
+    """
+    rng, hits = np.random.default_rng(3), 0
+    for _ in range(soak_count(2000, 200_000)):
+        reach, speed, pull = 10.0 ** rng.uniform((-2.0, -6.0, -2.0), (0.0, 1.0, 2.0))
+        leaving = speed * 10.0 ** rng.uniform(-17.0, 0.0)
+        angles = rng.uniform(0.0, 2.0 * math.pi, 2)
+        (nx, down), (ny, across) = np.cos(angles).tolist(), np.sin(angles).tolist()
+        x, y = reach * nx, reach * ny
+        vx, vy = -speed * ny - sense * leaving * nx, speed * nx - sense * leaving * ny
+        gx, gy = pull * down, pull * across
+        slack = SLACK * (1.0 + reach)
+        if sense < 0.0:
+            t = circle_time(x, y, vx, vy, gx, gy, reach, slack, 1.0)
+        else:
+            t = crossing_time(None, reach, sense, x, y, vx, vy, gx, gy, True, slack, -1.0, 1.0)
+        end = min(t, 1.0)
+        instants = np.concatenate([np.geomspace(1e-16, 1.0, 300), np.linspace(0.0, 1.0, 300)]) * end
+        gaps = -sense * (dense_gap(x, y, vx, vy, (gx, gy), instants) - reach)
+        assert gaps.min() >= -slack - SLACK * (speed + leaving + 2.0 * pull * end) * end
+        hits += 0.0 < t < 1.0
+    assert hits > 500
 
 
 @settings(max_examples=soak_count(300, 100_000), deadline=None)

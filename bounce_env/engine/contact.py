@@ -32,6 +32,7 @@ from bounce_env.engine.resolve import (
     is_soft,
     log,
     press_of,
+    take_soft,
     take_vague,
 )
 from bounce_env.engine.search import plan_rest, plan_standing
@@ -95,6 +96,8 @@ def _bounce_and_go(
     ball, bounces = state.balls[w, k], state.worlds[w].bounces
     if ball.vague > 0.0:
         take_vague(ball, state.touches, w)
+    if at_once and tables.gravity is not None:
+        take_soft(ball, state.touches, w, tables.scenes[state.worlds[w].scene].extent)
     single, corner, vx0, vy0 = bounce_from_all(state, tables, w, k, ledger)
     if ball.status == CRUSHED:
         return -1.0

@@ -101,6 +101,19 @@ def take_vague(ball: Record, touches: Table, w: int) -> None:
 
 
 @function
+def take_soft(ball: Record, touches: Table, w: int, extent: float) -> None:
+    """Take from the velocity what leaves a surface, that the ball is pressed on, in a hop that rises above no tolerance.
+
+    Such a hop may last less than the clock can tell: the ball would be told of its end for ever.
+    """
+    for i in range(ball.touched):
+        touch = touches[w, i]
+        closing, press = closing_speed(ball, touch), press_of(ball, touch)
+        if closing < 0.0 < press and is_soft(-closing, press, extent):
+            ball.vx, ball.vy = ball.vx + closing * touch.nx, ball.vy + closing * touch.ny
+
+
+@function
 def fastest_closing(ball: Record, touches: Table, w: int) -> tuple[int, float]:
     """Of the touched surfaces the one closed on fastest, ties by element: (index, speed), -1 if none is."""
     best, index, element = 0.0, -1, -1
@@ -247,6 +260,9 @@ def _softened(
     rolling = touch.bend != 0.0 and closing <= 1.5 * rolling_speed(ball, touch, press, head.extent)
     if closing < head.rest_speed or (rolling and head.rest_speed > 0.0):
         return 0.0, (1.0 if f > 0.0 else 0.0)
+    if touch.bend == 0.0 and material.b == 1.0 and is_soft(closing, press, head.extent):
+        # Hops that lose nothing have no end, and these show in no place of the ball: it slides.
+        return 0.0, f
     # Where nothing is lost bounces do not die away: only of a ball that rolls are they the smallest there are.
     lossless = material.b >= 1.0 and ball.rolling != touch.element
     if touch.bend == 0.0 or lossless:

@@ -16,6 +16,7 @@ from bounce_env.engine.layout import BOUNCE, CRUSHED, FLYING, JAMMED, OUT, SETTL
 from bounce_env.engine.resolve import is_caught, log, take_opposed
 from bounce_env.engine.search import pull, resolve_next
 from bounce_env.engine.tolerances import (
+    CORNER,
     MEETINGS_AT_ONE_INSTANT,
     PRESSING,
     ROLLING,
@@ -144,11 +145,11 @@ def collide(state: State, tables: Tables, w: int, k: int, j: int, hi: float, lo:
 def _count(world: Record, one: Record, other: Record, head: Record, hi: float, lo: float) -> None:
     """Count the hits of balls at one instant, and keep the fastest speed of any: what is left of it may be rounding.
 
-    Instants in between which no ball moves by more than what counts as touching are one, and so is a row of such.
+    Instants in between which no ball moves by more than the gaps of a corner are one, and so is a row of such.
     """
     t = since(hi, lo, world.meet_hi, world.meet_lo)
     g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
-    if not (world.meet_speed + g * t) * t <= ULPS_OF_LENGTH * head.extent or t < 0.0:
+    if not (world.meet_speed + g * t) * t <= CORNER * ULPS_OF_LENGTH * head.extent or t < 0.0:
         world.meets, world.meet_speed = 0, 0.0
     world.meet_hi, world.meet_lo = hi, lo
     world.meets += 1

@@ -306,6 +306,10 @@ def _project(ball: Record, touches: Table, w: int, first: int) -> bool:
         closing = closing_speed(ball, touch)
         ball.vx, ball.vy = vx + closing * touch.nx, vy + closing * touch.ny
         if closing > 0.0 and _is_allowed(ball, touches, w, vx, vy):
+            rest = closing_speed(ball, touch)
+            if rest > slow_speed(ball, touch):
+                # Next to the speed that is left, the rounding of the old one would be another hit.
+                ball.vx, ball.vy = ball.vx + rest * touch.nx, ball.vy + rest * touch.ny
             return True
     ball.vx, ball.vy = touches[w, first].ux, touches[w, first].uy
     striker = _striker(ball, touches, w)

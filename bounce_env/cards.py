@@ -166,7 +166,7 @@ class PinballEnv(BounceEnv):
     no size is given. One frame does not tell how fast the ball is (stack some, or ask for a `trail`), and none tells
     what only clocks and counters know: balls left, ball save, hold timer, multiplier, cooldowns, tilt.
 
-    Reward: points / 1000, and -2 for every ball that is lost.
+    Reward: points / 1000, and -2 for every ball that is lost ("dense"). With `reward="score"` points / 1000 alone.
 
     Start: the ball in the lane, shot at 1.45 to 2.4 m/s as the episode's seed says for each one. A step in which a ball
     is in the lane lasts until it is in play, and `frame_skip` frames more where it was there from the start. Options of
@@ -184,12 +184,12 @@ class PinballEnv(BounceEnv):
     `game_seconds`.
 
     Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; "pinball", whose file says what a
-    table must have), `action` ("discrete"), `nudge` (False), `balls` (3), `frame_skip` (2, in units of 1/60 s),
-    `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state", "pixels"),
-    `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a frame in pixels), `trail` (0.0; seconds of the
-    ball's way, bounces included, that a frame shows, fading), `show_bounces` (False; whether `render` shows, after a
-    step with bounces, the last of them in place of the step's end). A vector env also takes `num_envs`, `num_threads`
-    (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
+    table must have), `action` ("discrete"), `reward` ("dense"), `nudge` (False), `balls` (3), `frame_skip` (2, in units
+    of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state",
+    "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a frame in pixels), `trail` (0.0;
+    seconds of the ball's way, bounces included, that a frame shows, fading), `show_bounces` (False; whether `render`
+    shows, after a step with bounces, the last of them in place of the step's end). A vector env also takes `num_envs`,
+    `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
 
     Versions: v0, first release.
     """
@@ -199,6 +199,7 @@ class PinballEnv(BounceEnv):
         *,
         scene: str | PathLike[str] | Scene | None = None,
         action: Literal["discrete", "buttons"] = "discrete",
+        reward: Literal["dense", "score"] = "dense",
         nudge: bool = False,
         balls: int = 3,
         frame_skip: int = 2,
@@ -214,6 +215,7 @@ class PinballEnv(BounceEnv):
         options = PinballOptions(
             scene=scene,
             action=action,
+            reward=reward,
             nudge=nudge,
             balls=balls,
             frame_skip=frame_skip,

@@ -102,7 +102,7 @@ def take_vague(ball: Record, touches: Table, w: int) -> None:
 
 @function
 def take_soft(ball: Record, touches: Table, w: int, extent: float) -> None:
-    """Take from the velocity what leaves a surface, that the ball is pressed on, in a hop that rises above no tolerance.
+    """Take from the velocity what leaves a surface that the ball is pressed on in a hop that rises above no tolerance.
 
     Such a hop may last less than the clock can tell: the ball would be told of its end for ever.
     """

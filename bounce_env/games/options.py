@@ -49,6 +49,7 @@ class PinballOptions(Options):
     """Of the pinball game."""
 
     action: Literal["discrete", "buttons"] = "discrete"
+    reward: Literal["dense", "score"] = "dense"
     nudge: Annotated[bool, Field(strict=True)] = False
     balls: Annotated[StrictInt, Field(ge=1, le=9)] = 3
     time_limit: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)] | None = 120.0

@@ -71,7 +71,7 @@ from bounce_env.games.table import (
 )
 
 REWARD_PER_POINT = 1e-3
-REWARD_PER_BALL = -2.0  # for every ball that is lost; the score knows nothing of it
+REWARD_PER_BALL = -2.0  # for every ball that is lost, unless the reward is the score, which knows nothing of it
 
 LAUNCH_SPEED = (1.45, 2.4)  # m/s
 
@@ -231,7 +231,7 @@ def lose_ball(rules: Rules, worlds: Worlds, w: int) -> float:
         memory.serving = DUE
     else:
         episode.end = DRAINED
-    return REWARD_PER_BALL
+    return rules.loss
 
 
 @function
@@ -347,6 +347,7 @@ class PinballGame(Game):
             pace_of(options),
             options.balls,
             int(options.nudge),
+            REWARD_PER_BALL if options.reward == "dense" else 0.0,
         )
         codes: tuple[float, ...] = (0.0, 1.0, 2.0, 3.0)
         if options.nudge:

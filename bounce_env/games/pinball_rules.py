@@ -52,6 +52,7 @@ class Rules(NamedTuple):
     pace: Pace
     balls: int
     nudge: int  # 1 where the table can be nudged
+    loss: float  # what the reward loses with a ball
 
 
 @function
@@ -71,6 +72,7 @@ def borrow_rules(rules: Rules) -> Rules:
         rules.pace,
         rules.balls,
         rules.nudge,
+        rules.loss,
     )
 
 

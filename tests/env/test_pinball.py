@@ -210,11 +210,12 @@ def test_a_ball_lost_early_is_given_back_once_and_three_balls_make_an_episode():
         env.step(NONE)
 
 
-def test_a_lost_ball_costs_two_points_of_reward_and_none_of_the_score():
-    env = begun((0.239, 0.1), (0.0, -1.0), balls=2)
+@pytest.mark.parametrize(("kwargs", "cost"), [({}, -2.0), ({"reward": "dense"}, -2.0), ({"reward": "score"}, 0.0)])
+def test_a_lost_ball_costs_two_points_of_reward_and_none_of_the_score(kwargs, cost):
+    env = begun((0.239, 0.1), (0.0, -1.0), balls=2, **kwargs)
     env.unwrapped._batch.memory["saved"] = 1
     observation, reward, terminated, info = drained(env)
-    assert (reward, terminated, info["score"], info["ball"]) == (-2.0, False, 0.0, 1)
+    assert (reward, terminated, info["score"], info["ball"]) == (cost, False, 0.0, 1)
     assert observation[BALLS] == 0.5
     assert observation[SAVE] > 0.9  # the new ball has its own
 

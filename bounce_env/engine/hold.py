@@ -10,6 +10,7 @@ from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import HELD, RIDING, State, Tables
 from bounce_env.engine.resolve import along_speed, closing_speed, press_of, slow_speed
 from bounce_env.engine.tolerances import ALIGNED, BALANCE, CORNER, PRESSING, SWING, ULPS_OF_LENGTH, ULPS_OF_SPEED
+from bounce_env.engine.touch import stands
 
 
 @function
@@ -103,20 +104,14 @@ def _carries_alone(ball: Record, touch: Record) -> bool:
     """Whether a surface is level beneath the ball, which does not move away: its bounces there are summed instead."""
     level = abs(ball.gx * touch.ny - ball.gy * touch.nx) <= ALIGNED * (abs(ball.gx) + abs(ball.gy))
     beneath = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
-    return level and beneath and _stands(touch) and closing_speed(ball, touch) >= -slow_speed(ball, touch)
-
-
-@function
-def _stands(touch: Record) -> bool:
-    """Whether a touched surface does not move now."""
-    return not touch.moves and touch.ux == 0.0 and touch.uy == 0.0
+    return level and beneath and stands(touch) and closing_speed(ball, touch) >= -slow_speed(ball, touch)
 
 
 @function
 def _shares(ball: Record, one: Record, other: Record) -> tuple[float, float]:
     """The forces (per mass, m/s^2) along two normals that together hold the ball; negative where there are none."""
     turn = one.nx * other.ny - one.ny * other.nx
-    if not _stands(one) or not _stands(other) or abs(turn) <= ALIGNED:
+    if not stands(one) or not stands(other) or abs(turn) <= ALIGNED:
         return -1.0, -1.0
     noise = ALIGNED * (abs(ball.gx) + abs(ball.gy))
     of_one = (ball.gy * other.nx - ball.gx * other.ny) / turn

@@ -66,17 +66,24 @@ def collect_touches(state: State, tables: Tables, w: int, k: int) -> None:
 
 
 @function
+def stands(touch: Record) -> bool:
+    """Whether a touched surface does not move now."""
+    return not touch.moves and touch.ux == 0.0 and touch.uy == 0.0
+
+
+@function
 def keep_outside(ball: Record, touches: Table, w: int) -> None:
-    """Put a ball that touches a part on what stands and touches it, too.
+    """Put a ball that touches a part on what stands and touches it, too: if the part moves, on other parts as well.
 
     It has been put on the part; one that keeps pushing it there would, rounding by rounding, push it through.
     """
-    pushed = False
+    pushed, moved = False, False
     for i in range(ball.touched):
         pushed = pushed or touches[w, i].part >= 0
+        moved = moved or not stands(touches[w, i])
     for i in range(ball.touched):
         touch = touches[w, i]
-        if pushed and touch.part < 0:
+        if (pushed and touch.part < 0) or (moved and stands(touch)):
             ball.x, ball.y = ball.x - touch.gap * touch.nx, ball.y - touch.gap * touch.ny
 
 

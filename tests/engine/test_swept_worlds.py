@@ -81,7 +81,8 @@ def wall(rng: np.random.Generator, radius: float, **material: float) -> Sweep:
     shortest = math.hypot(*(tip + nearest * change))
     if shortest < 0.05 * length:
         seconds, shortest = 0.9 * nearest, math.hypot(*(tip + 0.9 * nearest * change))
-    part = Wall((0.0, 0.0), tuple(tip.tolist()), draggable=True, name="part", **material)
+    end, least = tuple(tip.tolist()), 0.04 * length
+    part = Wall((0.0, 0.0), end, draggable=True, min_length=least, name="part", **material)
 
     def ends(t):
         (ax, ay), (bx, by) = (p[:, None] * t for p in speeds.astype(np.longdouble))

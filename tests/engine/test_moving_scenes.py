@@ -31,8 +31,8 @@ def overlap(world: World) -> float:
 def test_moving_scenes() -> None:
     """Soak: 10^5 scenes with 1 to 5 balls, 20 s each; a command before every piece of them.
 
-    What uses up its budget does so in due time, but for a few in ten thousand: balls that bounce without loss, or from
-    a kick, in a gap as small as rounding.
+    What uses up its budget does so in due time, but for one or two in ten thousand: balls that a kick drives to and fro
+    in a gap of 1e-10 m or less.
     """
     counts: Counter[str] = Counter()
     deepest, fastest, jams = -1.0, 0.0, list[int]()
@@ -64,7 +64,7 @@ def test_moving_scenes() -> None:
         counts["budget" if BUDGET in seen else "crushed" if CRUSHED in seen else "ok"] += 1
     print(dict(counts), f"deepest {deepest:.2g} m, fastest {fastest:.5g} m/s, jams {jams}")  # noqa: T201
     assert fastest <= 1.01 * MAX_SPEED  # it may fall a little faster
-    assert len(jams) <= 5e-4 * counts.total(), jams
+    assert len(jams) <= 2e-4 * counts.total(), jams
     # Piles of balls and slow rolling, all of it in small hops.
     assert counts["budget"] <= 0.1 * counts.total()
 

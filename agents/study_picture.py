@@ -62,4 +62,4 @@ def _draw(axes: Axes, panel: Panel) -> None:
     axes.set_xlabel("environment steps (millions)")
     axes.set_ylabel("mean score in training (points)")
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    axes.legend(fontsize="x-small")
+    axes.legend(fontsize="x-small", loc="lower right")  # what is learned rises: no curve comes there

@@ -6,6 +6,7 @@ anchors/numerics.md, check 2).
 
 import math
 
+from bounce_env.engine.approach import closing_speed, is_soft, press_of
 from bounce_env.engine.arrive import face_crossings
 from bounce_env.engine.hold import bear, find_contact, is_slow
 from bounce_env.engine.hops import hop_on
@@ -25,16 +26,7 @@ from bounce_env.engine.layout import (
     Tables,
 )
 from bounce_env.engine.pairs import plan_pairs
-from bounce_env.engine.resolve import (
-    bounce_from_all,
-    closing_speed,
-    count_bounce,
-    is_soft,
-    log,
-    press_of,
-    take_soft,
-    take_vague,
-)
+from bounce_env.engine.resolve import bounce_from_all, count_bounce, log, take_soft, take_vague
 from bounce_env.engine.search import plan_rest, plan_standing
 from bounce_env.engine.tolerances import CLEARANCE, CORNER, STANDING, ULPS_OF_LENGTH, WEIGHTLESS
 from bounce_env.engine.touch import collect_touches, keep_outside

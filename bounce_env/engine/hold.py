@@ -6,11 +6,10 @@ closed form under the tangential part of its acceleration; on curves it may rest
 
 import math
 
+from bounce_env.engine.approach import along_speed, closing_speed, press_of, slow_speed, stands
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import HELD, RIDING, State, Tables
-from bounce_env.engine.resolve import along_speed, closing_speed, press_of, slow_speed
 from bounce_env.engine.tolerances import ALIGNED, BALANCE, CORNER, PRESSING, SWING, ULPS_OF_LENGTH, ULPS_OF_SPEED
-from bounce_env.engine.touch import stands
 
 
 @function

@@ -1,16 +1,9 @@
 """Small hops: how a ball goes on along what it is pressed on, where there is no closed form for a contact."""
 
+from bounce_env.engine.approach import closing_speed, press_of, push_off, rolling_speed, slow_speed, towards
 from bounce_env.engine.jit import Table, function
 from bounce_env.engine.layout import State, Tables
-from bounce_env.engine.resolve import (
-    closing_speed,
-    count_bounce,
-    fastest_closing,
-    press_of,
-    rolling_speed,
-    slow_speed,
-    towards,
-)
+from bounce_env.engine.resolve import count_bounce, fastest_closing
 
 
 @function
@@ -45,7 +38,7 @@ def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     hop = rolling_speed(ball, touch, best, extent) + closing_speed(ball, touch)
     ball.rolling = touch.element
     vx0, vy0 = ball.vx, ball.vy
-    ball.vx, ball.vy = vx0 + hop * touch.nx, vy0 + hop * touch.ny
+    push_off(ball, touch, hop)
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
     _keep_off(state, w, k, ledger)
 
@@ -57,7 +50,7 @@ def _keep_off(state: State, w: int, k: int, ledger: Table) -> None:
     other, closing = fastest_closing(ball, state.touches, w)
     if other >= 0:
         touch, vx0, vy0 = state.touches[w, other], ball.vx, ball.vy
-        ball.vx, ball.vy = vx0 + closing * touch.nx, vy0 + closing * touch.ny
+        push_off(ball, touch, closing)
         count_bounce(state, w, k, touch, vx0, vy0, ledger)
 
 
@@ -80,6 +73,6 @@ def _leave_part(state: State, parts: Table, w: int, k: int, ledger: Table) -> No
         return
     touch = state.touches[w, index]
     vx0, vy0 = ball.vx, ball.vy
-    ball.vx, ball.vy = vx0 + touch.least * touch.nx, vy0 + touch.least * touch.ny
+    push_off(ball, touch, touch.least)
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
     _keep_off(state, w, k, ledger)

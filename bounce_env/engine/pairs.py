@@ -13,8 +13,9 @@ from bounce_env.engine.instant import before, later, since
 from bounce_env.engine.jit import Feature, Record, Table, function, function_of_feature, routine
 from bounce_env.engine.law import capped
 from bounce_env.engine.layout import BOUNCE, CRUSHED, FLYING, JAMMED, OUT, SETTLES, State, Tables
-from bounce_env.engine.resolve import is_caught, log, take_opposed
+from bounce_env.engine.resolve import log
 from bounce_env.engine.search import pull, resolve_next
+from bounce_env.engine.squeeze import is_caught, take_opposed
 from bounce_env.engine.tolerances import (
     CORNER,
     MEETINGS_AT_ONE_INSTANT,

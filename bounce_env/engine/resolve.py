@@ -5,88 +5,22 @@ is closed on. So a corner is right from either side, and mirror images stay mirr
 (whether it flies, slides or rests) is decided in `engine.contact`.
 """
 
-import math
-
+from bounce_env.engine.approach import (
+    along_speed,
+    closing_speed,
+    is_soft,
+    press_of,
+    push_off,
+    rolling_speed,
+    slow_speed,
+    towards,
+)
 from bounce_env.engine.instant import before, later
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.law import bounce, capped
 from bounce_env.engine.layout import BOUNCE, CRUSHED, State, Tables
-from bounce_env.engine.tolerances import (
-    ALIGNED,
-    BOUNCES_AT_ONE_INSTANT,
-    CLEARANCE,
-    CORNER,
-    OPPOSED,
-    PRESSING,
-    ROLLING,
-    SQUEEZES,
-    ULPS_OF_LENGTH,
-    ULPS_OF_SPEED,
-)
-
-
-@function
-def slow_speed(ball: Record, touch: Record) -> float:
-    """Closing slower than this [m/s] is no hit: the rounding of the ball's velocity, and of a curve's normal."""
-    speed = abs(ball.vx) + abs(ball.vy) + (abs(touch.ux) + abs(touch.uy))
-    return (ULPS_OF_SPEED + ball.slack * abs(touch.bend)) * speed
-
-
-@function
-def closing_speed(ball: Record, touch: Record) -> float:
-    """How fast [m/s] the ball and a surface that it touches come closer."""
-    return -((ball.vx - touch.ux) * touch.nx + (ball.vy - touch.uy) * touch.ny)
-
-
-@function
-def press_of(ball: Record, touch: Record) -> float:
-    """Acceleration [m/s^2] with which the ball is pressed on a surface that it moves along; 0 where it is not.
-
-    Gravity's share, and on a curve what it takes to follow it.
-    """
-    along = along_speed(ball, touch)
-    turn = touch.bend * along * along
-    press = -(ball.gx * touch.nx + ball.gy * touch.ny) - turn
-    noise = PRESSING * (abs(ball.gx) + abs(ball.gy) + abs(turn))
-    return press if press > noise else 0.0
-
-
-@function
-def is_soft(closing: float, press: float, extent: float) -> bool:
-    """Whether a hop at this speed [m/s] does not rise above the tolerance of lengths."""
-    return closing <= soft_speed(press, extent)
-
-
-@function
-def soft_speed(press: float, extent: float) -> float:
-    """Speed [m/s] of a hop that rises by the tolerance of lengths."""
-    return math.sqrt(2.0 * press * (ULPS_OF_LENGTH * extent))
-
-
-@function
-def rolling_speed(ball: Record, touch: Record, press: float, extent: float) -> float:
-    """Speed [m/s] of the small hops in which a ball rolls on a curved surface that it is pressed on.
-
-    A share of the speed at which it would let go of the curve; for a slow ball less, so that one in a hollow between
-    several surfaces comes down to rest.
-    """
-    return min(
-        ROLLING * math.sqrt(press / abs(touch.bend)),
-        max(0.5 * abs(along_speed(ball, touch)), 4.0 * soft_speed(press, extent)),
-    )
-
-
-@function
-def along_speed(ball: Record, touch: Record) -> float:
-    """Speed [m/s] of the ball along a surface that it touches, counter-clockwise about it positive."""
-    return (ball.vy - touch.uy) * touch.nx - (ball.vx - touch.ux) * touch.ny
-
-
-@function
-def towards(touch: Record) -> float:
-    """How fast [m/s] a touched surface itself moves towards the ball; 0 where it stands, or slides along it."""
-    speed = touch.ux * touch.nx + touch.uy * touch.ny
-    return speed if abs(speed) > ULPS_OF_SPEED * (abs(touch.ux) + abs(touch.uy)) else 0.0
+from bounce_env.engine.squeeze import is_crushed, note_strike
+from bounce_env.engine.tolerances import ALIGNED, BOUNCES_AT_ONE_INSTANT, CORNER, OPPOSED, ULPS_OF_SPEED
 
 
 @function
@@ -96,7 +30,7 @@ def take_vague(ball: Record, touches: Table, w: int) -> None:
         touch = touches[w, i]
         closing = closing_speed(ball, touch)
         if 0.0 < closing <= ball.vague:
-            ball.vx, ball.vy = ball.vx + closing * touch.nx, ball.vy + closing * touch.ny
+            push_off(ball, touch, closing)
     ball.vague = 0.0
 
 
@@ -110,7 +44,7 @@ def take_soft(ball: Record, touches: Table, w: int, extent: float) -> None:
         touch = touches[w, i]
         closing, press = closing_speed(ball, touch), press_of(ball, touch)
         if closing < 0.0 < press and is_soft(-closing, press, extent):
-            ball.vx, ball.vy = ball.vx + closing * touch.nx, ball.vy + closing * touch.ny
+            push_off(ball, touch, closing)
 
 
 @function
@@ -146,7 +80,7 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
         if ball.touched > 1 and _is_damped(state, tables, w, k, i, closing):
             break
         kicked = _bounce_from(state, tables, w, k, i, closing, noise, ledger)
-        if tables.parts is not None and _is_crushed(ball, state.touches[w, i], tables.scenes[state.worlds[w].scene]):
+        if tables.parts is not None and is_crushed(ball, state.touches[w, i], tables.scenes[state.worlds[w].scene]):
             ball.status = CRUSHED
             return -1, -1, ball.vx, ball.vy
         if ball.touched == 1:
@@ -206,50 +140,6 @@ def _bounce_from(
 
 
 @function
-def _is_crushed(ball: Record, touch: Record, head: Record) -> bool:
-    """Take note of a bounce, and say whether the ball is caught between a closing part and what opposes it.
-
-    It is when, not having come further than a clearance from where the part first struck it, it has gone to and fro so
-    often, and is struck again.
-    """
-    strikes = touch.part >= 0 and towards(touch) > 0.0
-    if take_opposed(ball, head, touch.nx, touch.ny):
-        return False
-    caught = is_caught(ball, head)
-    if caught and strikes and touch.part == ball.struck:
-        ball.snx, ball.sny, ball.sux, ball.suy = touch.nx, touch.ny, touch.ux, touch.uy
-        return ball.squeezes >= SQUEEZES
-    if strikes:
-        _note_strike(ball, touch)
-    elif not caught:
-        ball.struck = -1
-    return False
-
-
-@function
-def is_caught(ball: Record, head: Record) -> bool:
-    """Whether the ball has not come further than a clearance from where a closing part struck it."""
-    clearance = CLEARANCE * head.extent
-    dx, dy = ball.x - ball.sx, ball.y - ball.sy
-    return ball.struck >= 0 and dx * dx + dy * dy <= clearance * clearance
-
-
-@function
-def take_opposed(ball: Record, head: Record, nx: float, ny: float) -> bool:
-    """Take note of a bounce with this normal where it throws the ball back on the part that has it caught."""
-    opposed = is_caught(ball, head) and nx * ball.snx + ny * ball.sny < -OPPOSED
-    if opposed:
-        ball.squeezes += 1
-    return opposed
-
-
-@function
-def _note_strike(ball: Record, touch: Record) -> None:
-    ball.struck, ball.squeezes, ball.sx, ball.sy = touch.part, 0, ball.x, ball.y
-    ball.snx, ball.sny, ball.sux, ball.suy = touch.nx, touch.ny, touch.ux, touch.uy
-
-
-@function
 def _softened(
     ball: Record, touch: Record, head: Record, material: Record, closing: float, rebound: float, f: float
 ) -> tuple[float, float]:
@@ -304,12 +194,12 @@ def _project(ball: Record, touches: Table, w: int, first: int) -> bool:
         touch = touches[w, (first + n) % ball.touched]
         ball.vx, ball.vy = vx, vy
         closing = closing_speed(ball, touch)
-        ball.vx, ball.vy = vx + closing * touch.nx, vy + closing * touch.ny
+        push_off(ball, touch, closing)
         if closing > 0.0 and _is_allowed(ball, touches, w, vx, vy):
             rest = closing_speed(ball, touch)
             if rest > slow_speed(ball, touch):
                 # Next to the speed that is left, the rounding of the old one would be another hit.
-                ball.vx, ball.vy = ball.vx + rest * touch.nx, ball.vy + rest * touch.ny
+                push_off(ball, touch, rest)
             return True
     ball.vx, ball.vy = touches[w, first].ux, touches[w, first].uy
     striker = _striker(ball, touches, w)
@@ -322,7 +212,7 @@ def _project(ball: Record, touches: Table, w: int, first: int) -> bool:
         for j in range(i):
             if _squeeze_out(ball, touches[w, i], touches[w, j]) and _is_allowed(ball, touches, w, vx, vy):
                 return True
-    _note_strike(ball, touches[w, striker])
+    note_strike(ball, touches[w, striker])
     return False
 
 

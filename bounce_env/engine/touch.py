@@ -5,6 +5,7 @@ The ball does not move while its bounces at one instant are resolved, so the lis
 
 import math
 
+from bounce_env.engine.approach import stands
 from bounce_env.engine.arc import in_span
 from bounce_env.engine.ends import ends_of
 from bounce_env.engine.impact import beside
@@ -63,12 +64,6 @@ def collect_touches(state: State, tables: Tables, w: int, k: int) -> None:
         scene,
         head.rest_speed,
     )
-
-
-@function
-def stands(touch: Record) -> bool:
-    """Whether a touched surface does not move now."""
-    return not touch.moves and touch.ux == 0.0 and touch.uy == 0.0
 
 
 @function

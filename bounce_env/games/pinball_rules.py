@@ -52,7 +52,7 @@ class Rules(NamedTuple):
     pace: Pace
     balls: int
     nudge: int  # 1 where the table can be nudged
-    loss: float  # what the reward loses with a ball
+    loss: float  # reward for a ball that is lost, 0 or less
 
 
 @function

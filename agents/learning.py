@@ -106,7 +106,7 @@ def new_model(run: Run) -> Model:
     env = run.task.for_sb3(run.hyperparameters.n_envs, training_seed(run.seed, 0))
     # Without a seed of its own: SB3 would seed the environments anew with it.
     parameters = run.hyperparameters
-    return parameters.algorithm(env=env, device="cpu", **parameters.for_sb3())
+    return _seeded(parameters.algorithm(env=env, device="cpu", **parameters.for_sb3()), run.seed)
 
 
 def resumed_model(run: Run) -> Model:
@@ -115,9 +115,16 @@ def resumed_model(run: Run) -> Model:
     DQN and SAC begin with an empty replay buffer again.
     """
     steps = run.load_model().num_timesteps
-    set_random_seed(int(np.random.SeedSequence((run.seed, steps)).generate_state(1)[0]))
+    seed = int(np.random.SeedSequence((run.seed, steps)).generate_state(1)[0])
+    set_random_seed(seed)
     env = run.task.for_sb3(run.hyperparameters.n_envs, training_seed(run.seed, steps))
-    return run.load_model(env)
+    return _seeded(run.load_model(env), seed)
+
+
+def _seeded(model: Model, seed: int) -> Model:
+    """The model, what it draws from its action space seeded, too: DQN's exploration and SAC's first actions."""
+    model.action_space.seed(seed)
+    return model
 
 
 def learn(run: Run, model: Model, curve: Curve, stop: Stop, *, checkpoint_seconds: float, progress_bar: bool) -> float:

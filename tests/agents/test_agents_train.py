@@ -18,7 +18,7 @@ from PIL import Image
 from stable_baselines3 import PPO
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-from agents.algorithms import PPOHyperparameters
+from agents.algorithms import Model, PPOHyperparameters
 from agents.baselines import BASELINES
 from agents.command import Refused
 from agents.config import load_config
@@ -70,7 +70,7 @@ def copy(run_folder: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(run_folder, tmp_path / "run"))
 
 
-def parameters(model: PPO) -> list[torch.Tensor]:
+def parameters(model: Model) -> list[torch.Tensor]:
     return list(model.policy.state_dict().values())
 
 
@@ -142,6 +142,9 @@ def test_other_algorithms(algo: str, tmp_path: Path) -> None:
     task, players = named(str(folder), None, None)
     assert task.resolved_kwargs["action"] == action
     assert play(task, players["trained"], 4).scores.shape == (4,)
+    # The same seed trains the same agent.
+    again = open_run(trained_in(tmp_path / "again", path, algo=algo)).load_model()
+    assert all(torch.equal(a, b) for a, b in zip(parameters(run.load_model()), parameters(again), strict=True))
     # It goes on, with an empty replay buffer.
     config = yaml.safe_load((folder / "config.yml").read_text())
     config[ENV_ID]["n_timesteps"] = 960

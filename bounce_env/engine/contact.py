@@ -66,14 +66,13 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
 
 @function
 def _stand(state: State, w: int, k: int, extent: float, ledger: Table) -> float:
-    """Let a ball that is jammed stand for as long as moving by a clearance would take; returns that duration [s]."""
+    """Let a ball that is jammed stand for as long as falling by a clearance would take; returns that duration [s]."""
     ball = state.balls[w, k]
     if ball.support >= 0:
         _log_end(state, w, k, ball.support, ball.vx, ball.vy, ledger)
     ball.contact, ball.rides, ball.support, ball.ax, ball.ay = HELD, -1, -1, 0.0, 0.0
-    way, g = CLEARANCE * extent, math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
-    falling = math.sqrt(2.0 * way / g) if g > WEIGHTLESS else math.inf
-    return min(falling, way / max(state.worlds[w].meet_speed, STANDING))
+    g = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+    return math.sqrt(2.0 * CLEARANCE * extent / g) if g > WEIGHTLESS else math.inf
 
 
 @function

@@ -103,7 +103,12 @@ TOUCH = record(
     moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
     element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
 )  # fmt: skip
-PAIR = record(hi="f8", lo="f8")  # when two balls hit each other while both keep to their flights
+PAIR = record(  # of two balls
+    hi="f8", lo="f8",  # when they hit each other while both keep to their flights
+    # How often they have done so within a clearance, the way [m] that they went meanwhile, at most; when they did last,
+    # and how fast [m/s] they were then, together.
+    meets="i8", way="f8", last_hi="f8", last_lo="f8", speed="f8",
+)  # fmt: skip
 COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
 ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
 MOTION = record(  # of a part, at the instant of its last command or stop

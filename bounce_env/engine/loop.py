@@ -25,7 +25,7 @@ from bounce_env.engine.layout import (
     State,
     Tables,
 )
-from bounce_env.engine.pairs import collide, first_pair
+from bounce_env.engine.pairs import collide, first_pair, forget_meetings
 from bounce_env.engine.parts import offset_at, plan_zones, stop_instant
 from bounce_env.engine.search import plan_parts, pull
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
@@ -63,7 +63,7 @@ def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, 
         if what == OF_BALL:
             world.events += _ball_event(state, tables, w, i, ledger)
         elif what == OF_PAIR:
-            collide(state, tables, w, i, j, hi, lo, ledger)
+            collide(state, tables, state.pairs, w, i, j, hi, lo, ledger)
             world.events += 1
         else:
             part_stops(state, tables, state.motions, tables.parts, world, w, i, ledger)
@@ -192,6 +192,7 @@ def restart(state: State, tables: Tables, w: int) -> None:
     world.time_hi, world.time_lo = 0.0, 0.0
     world.bounces, world.speed_capped, world.rows = 0, 0, 0
     world.drag_hi, world.drag_lo, world.meet_hi, world.meet_lo = -1.0, 0.0, -math.inf, 0.0
+    forget_meetings(state.pairs, w)
     clear_hits(state, w)
     _cool_down(state.cooling, w)
     _switch_on(state.disabled, w)

@@ -17,8 +17,11 @@ from bounce_env.engine.resolve import log
 from bounce_env.engine.search import pull, resolve_next
 from bounce_env.engine.squeeze import is_caught, take_opposed
 from bounce_env.engine.tolerances import (
+    CLEARANCE,
     CORNER,
+    MEETINGS_AFTER_STANDING,
     MEETINGS_AT_ONE_INSTANT,
+    MEETINGS_IN_A_CLEARANCE,
     PRESSING,
     ROLLING,
     SQUEEZES,
@@ -110,13 +113,28 @@ def first_pair(pairs: Table, w: int, until_hi: float, until_lo: float) -> tuple[
     return hi, lo, one, other
 
 
+@function
+def forget_meetings(pairs: Table, w: int) -> None:
+    """No two balls have hit each other yet."""
+    if pairs is None:
+        return
+    for k in range(pairs.shape[1]):
+        for j in range(k):
+            pair = pairs[w, k, j]
+            pair.meets, pair.way, pair.last_hi, pair.last_lo, pair.speed = 0, 0.0, 0.0, 0.0, 0.0
+
+
 @routine
-def collide(state: State, tables: Tables, w: int, k: int, j: int, hi: float, lo: float, ledger: Table) -> None:
-    """Let balls `k` and `j` hit each other at the instant (hi, lo); both then bounce from what else they touch.
+def collide(
+    state: State, tables: Tables, pairs: Table, w: int, k: int, j: int, hi: float, lo: float, ledger: Table
+) -> None:
+    """Let balls `k` > `j` hit each other at the instant (hi, lo); both then bounce from what else they touch.
 
     Equal masses exchange (1 + b^2) / 2 of the speed at which they close; friction does not act. A ball that lies on
     another one leaves it with a smallest rebound, as it would a curve.
     """
+    if pairs is None:
+        return
     one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
     head = tables.scenes[world.scene]
     ax, ay = pull(tables.gravity, one)
@@ -129,17 +147,20 @@ def collide(state: State, tables: Tables, w: int, k: int, j: int, hi: float, lo:
     apart = 0.5 * (2.0 * head.ball_radius - distance)
     one.x, one.y = one.x + apart * nx, one.y + apart * ny
     other.x, other.y = other.x - apart * nx, other.y - apart * ny
+    pair = pairs[w, k, j]
     _count(world, one, other, head, hi, lo)
+    _count_of_pair(pair, one, other, head, hi, lo)
     _exchange(state, tables, w, k, j, nx, ny, distance, ledger)
     world.meet_speed = max(world.meet_speed, _speeds(one, other))
-    if world.meets > MEETINGS_AT_ONE_INSTANT:
+    pair.speed = _speeds(one, other)
+    if world.meets > MEETINGS_AT_ONE_INSTANT or pair.meets > MEETINGS_IN_A_CLEARANCE:
         _jam(state, tables, w, k, j, nx, ny, ledger)
         _jam(state, tables, w, j, k, -nx, -ny, ledger)
     for ball in (one, other):
         if ball.status != CRUSHED:
             resolve_next(ball)
-    plan_pairs(state, tables, state.pairs, w, k)
-    plan_pairs(state, tables, state.pairs, w, j)
+    plan_pairs(state, tables, pairs, w, k)
+    plan_pairs(state, tables, pairs, w, j)
 
 
 @function
@@ -149,12 +170,29 @@ def _count(world: Record, one: Record, other: Record, head: Record, hi: float, l
     Instants in between which no ball moves by more than the gaps of a corner are one, and so is a row of such.
     """
     t = since(hi, lo, world.meet_hi, world.meet_lo)
-    g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
-    if not (world.meet_speed + g * t) * t <= CORNER * ULPS_OF_LENGTH * head.extent or t < 0.0:
+    if not _longest_way(one, other, world.meet_speed, t) <= CORNER * ULPS_OF_LENGTH * head.extent or t < 0.0:
         world.meets, world.meet_speed = 0, 0.0
     world.meet_hi, world.meet_lo = hi, lo
     world.meets += 1
     world.meet_speed = max(world.meet_speed, _speeds(one, other))
+
+
+@function
+def _count_of_pair(pair: Record, one: Record, other: Record, head: Record, hi: float, lo: float) -> None:
+    """Count the hits of these two within a clearance."""
+    t = since(hi, lo, pair.last_hi, pair.last_lo)
+    pair.way += _longest_way(one, other, max(pair.speed, _speeds(one, other)), t)
+    if pair.way > CLEARANCE * head.extent:
+        stood = pair.meets > MEETINGS_IN_A_CLEARANCE
+        pair.meets, pair.way = MEETINGS_IN_A_CLEARANCE - MEETINGS_AFTER_STANDING if stood else 0, 0.0
+    pair.meets, pair.last_hi, pair.last_lo = pair.meets + 1, hi, lo
+
+
+@function
+def _longest_way(one: Record, other: Record, speed: float, t: float) -> float:
+    """No shorter than what [m] two balls move in `t` seconds that are no faster [m/s] than this between their hits."""
+    g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
+    return (speed + g * t) * t
 
 
 @function

@@ -30,8 +30,14 @@ SEARCH_ENDS = 1e-9
 BOUNCES_AT_ONE_INSTANT = 32
 
 # The same for hits of any two balls. What then still goes on does so between balls that are held in place by what else
-# they touch: they stand for as long as it takes to move by a clearance (CLEARANCE), and are then looked at again.
+# they touch: they stand for as long as it takes to fall by a clearance (CLEARANCE), and are then looked at again.
 MEETINGS_AT_ONE_INSTANT = 256
+
+# The same for hits of one and the same two balls, between the first and last of which neither can have moved by more
+# than a clearance: they go to and fro in a gap of less than 1e-7 of the scene, or are thrown at each other again and
+# again from next to no distance. Two that have just stood, and go on like that, stand again after so many hits.
+MEETINGS_IN_A_CLEARANCE = 1024
+MEETINGS_AFTER_STANDING = 64
 
 # Nearer than this share of its way to a stop, a part may or may not have reached it: the stop's instant decides.
 UNSURE = 2.0**-40

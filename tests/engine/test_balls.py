@@ -150,6 +150,41 @@ def test_a_pile_stays_where_it_is() -> None:
         assert world.status.tolist() == [OK] * 3
 
 
+def squeezed(gap: float, g: float) -> World:
+    """Two balls between walls that kick, with so much room [m] more than they need: soon as fast as max_speed."""
+    sides = Wall((0, -1), (0, 1), kick=1.0), Wall((4 * R + gap, 1), (4 * R + gap, -1), kick=1.0)
+    scene = Scene(gravity=(g, 0.0), ball=Ball(radius=R), max_speed=50.0, elements=sides)
+    return started(scene, [(R, 0.0), (3 * R + gap / 2, 0.0)], [(0.0, 0.0), (-1.0, 0.0)])
+
+
+@pytest.mark.parametrize("g", [0.0, 1.0])
+@pytest.mark.parametrize("gap", [1e-10, 1e-9, 1e-8])
+def test_balls_in_a_gap_of_next_to_nothing_stand(gap: float, g: float) -> None:
+    """Fifty times in a nanosecond or so they would hit each other. Time runs on instead."""
+    world = squeezed(gap, g)
+    events = 0
+    for _ in range(8):
+        events += len(world.advance(0.125, ledger=True, max_events=20_000))
+        assert world.status.tolist() == [OK, OK]
+        assert world.position[:, 0] == pytest.approx([R, 3 * R], abs=2.0 * gap)
+    assert world.velocity.tolist() == [[0.0, 0.0], [0.0, 0.0]]
+    if g == 0.0:
+        assert events == pytest.approx(3 * 1024, rel=0.02)  # once: then nothing moves them
+
+
+def test_balls_in_a_narrow_gap_do_not_stand() -> None:
+    """A hundredth of a millimetre: each hit at its instant, 2.5 million a second."""
+    world = squeezed(1e-5, 0.0)
+    world.advance(0.01)
+    before, speeds = world.time, set()
+    rows = world.advance(0.002, ledger=True)
+    pairs = rows[(rows["element"] > 1) & (rows["ball"] == 0)]
+    speeds = set(np.abs(np.append(pairs["vx0"], pairs["vx1"])).tolist())
+    assert world.time == before + 0.002
+    assert speeds == {0.0, 50.0}
+    assert len(pairs) == pytest.approx(0.002 * 50.0 / 1e-5, abs=1)
+
+
 def test_two_hits_at_one_instant_are_told_in_order() -> None:
     """A ball that two others hit at once from both sides stays where it is."""
     world = started(FREE, [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0)], [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0)])

@@ -13,12 +13,10 @@ from ledger_known import Way
 from ledger_law import ROLLING, capped
 from ledger_row import BOUNCE, Row, apart
 from ledger_rows import RowChecks
-from ledger_setting import EXACT, TOLERANCE
+from ledger_setting import CLEARANCE, EXACT, TOLERANCE
 from ledger_touch import ULP, Vector
 from ledger_walk import Bearer, Mode, State
 
-CLEARANCE = 2.0**-14  # of the extent: a crushed ball has no more room than this
-MEETINGS = 256  # hits of balls at one instant after which those that go on are stopped
 OPPOSED = 0.5
 
 
@@ -129,11 +127,10 @@ class PairChecks(RowChecks):
         if row.after != (0.0, 0.0):
             self.say(index, "a hit of two balls has two rows")
         hits = self.setting.meetings(self.numbers[index])
-        if hits.count < MEETINGS:
-            self.say(index, f"{hits.count} hits of balls at one instant are too few to stop one")
-        way, pull = CLEARANCE * self.extent, math.hypot(*self.walk.acceleration)
-        falling = math.sqrt(2.0 * way / pull) if pull else math.inf
-        until = row.time + min(falling, way / hits.speed if hits.speed else math.inf)
+        if not hits.are_too_many:
+            self.say(index, f"{hits.at_once} hits of balls at one instant, {hits.of_two} of two: too few to stop one")
+        pull = math.hypot(*self.walk.acceleration)
+        until = row.time + (math.sqrt(2.0 * CLEARANCE * self.extent / pull) if pull else math.inf)
         self.jammed = row.time
         state = State(row.time, row.x, row.y, 0.0, 0.0)
         self.ways = [Way(state, Mode.STANDS, None, math.inf, until)]

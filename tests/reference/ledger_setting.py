@@ -22,12 +22,24 @@ TOLERANCE = 1e-9  # of lengths relative to the scene's size, of speeds relative 
 EXACT = 1e-12  # what one formula may lose
 STANDING = 1e-290  # [m/s] slower than this is not at all
 
+CLEARANCE = 2.0**-14  # of the extent: a crushed ball has no more room than this
+MEETINGS = 256  # hits of any balls at one instant after which those that go on are stopped
+MEETINGS_OF_TWO = 1024  # the same for two balls, within a clearance
+MEETINGS_MORE = 64  # the same for two that have just stood
+
 
 class Meetings(NamedTuple):
-    """The hits of balls at one instant up to a row, or at instants between which none moves by more than a touch."""
+    """Hits of balls up to a row: of any at one instant, or at instants between which none moves by more than a touch;
+    and of the two of the row, while neither has moved by more than a clearance.
+    """
 
-    count: int
-    speed: float  # [m/s] the fastest two of them, together
+    at_once: int
+    of_two: int
+
+    @property
+    def are_too_many(self) -> bool:
+        """Whether a ball may be stopped for them."""
+        return self.at_once >= MEETINGS or self.of_two >= MEETINGS_OF_TWO
 
 
 class Setting:
@@ -55,14 +67,31 @@ class Setting:
 
     def meetings(self, number: int) -> Meetings:
         """Those that lead up to the row of this number."""
-        begin, count, speed = -math.inf, 0, 0.0
-        elements, pull = len(self.scene.elements), math.hypot(*self.scene.gravity)
-        for row in self.rows[:number]:
-            if row.kind != BOUNCE or row.element < elements:
-                continue
-            t = row.time - begin
-            if not (speed + pull * t) * t <= HOP_ULPS * self.extent:
-                begin, count, speed = row.time, 0, 0.0
-            count += row.ball > row.element - elements
+        elements, last = len(self.scene.elements), self.rows[number]
+        met = [row for row in self.rows[:number] if row.kind == BOUNCE and row.element >= elements]
+        two = {last.ball, last.element - elements}
+        return Meetings(self._at_once(met), self._of_two([r for r in met if {r.ball, r.element - elements} == two]))
+
+    def _at_once(self, met: Sequence[Row]) -> int:
+        last, count, speed = -math.inf, 0, 0.0
+        for row in met:
+            if not self._way(speed, row.time - last) <= HOP_ULPS * self.extent:
+                count, speed = 0, 0.0
+            last = row.time
+            count += row.ball > row.element - len(self.scene.elements)
             speed = max(speed, sum(map(abs, (*row.before, row.ux, row.uy))))
-        return Meetings(count, speed)
+        return count
+
+    def _of_two(self, met: Sequence[Row]) -> int:
+        last, count, speed, way = 0.0, 0, 0.0, 0.0
+        for row in met:
+            before = sum(map(abs, (*row.before, row.ux, row.uy)))
+            way += self._way(max(speed, before), row.time - last)
+            if way > CLEARANCE * self.extent:
+                count, way = MEETINGS_OF_TWO - MEETINGS_MORE if count >= MEETINGS_OF_TWO else 0, 0.0
+            last, speed = row.time, before
+            count += row.ball > row.element - len(self.scene.elements)
+        return count
+
+    def _way(self, speed: float, t: float) -> float:
+        return (speed + math.hypot(*self.scene.gravity) * t) * t

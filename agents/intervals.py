@@ -1,12 +1,16 @@
 """Intervals of a mean score over several trainings and their episodes."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy import stats
 
 from agents.results import CONFIDENCE
+
+Scores = npt.NDArray[Any]
 
 RESAMPLES = 10_000
 
@@ -22,23 +26,30 @@ class Interval:
     episodes: int  # of all of them together
 
 
-def bootstrap(scores: Sequence[npt.NDArray[np.float64]]) -> Interval:
+def bootstrap(scores: Sequence[Scores]) -> Interval:
     """The mean over runs and episodes, and the percentile interval of a bootstrap over both.
 
-    scores: of each run, (episodes,). First runs are drawn with replacement, then of each its episodes: two trainings
-    differ by more than two episodes of one do (Agarwal et al. 2021, "Deep RL at the edge of the statistical
+    scores: of each run, (episodes,), 2 or more. First runs are drawn with replacement, then of each its episodes: two
+    trainings differ by more than two episodes of one do (Agarwal et al. 2021, "Deep RL at the edge of the statistical
     precipice", draw runs alone). The same scores give the same interval.
     """
     generator = np.random.default_rng(0)
-    # Of each run many means over resampled episodes; a resampled run takes the next of them.
-    means = np.stack([
-        generator.choice(one, (RESAMPLES, len(one))).mean(axis=1) for one in scores
-    ])  # fmt: skip
-    drawn = generator.integers(len(scores), size=(len(scores), RESAMPLES))
-    resampled = np.zeros(RESAMPLES)
-    for row in drawn:
-        resampled += means[row, generator.permutation(RESAMPLES)]
-    tail = 100.0 * (1.0 - CONFIDENCE) / 2.0
-    lo, hi = np.percentile(resampled / len(scores), [tail, 100.0 - tail]).tolist()
+    of_runs = [_resampled((one,), np.mean, generator) for one in scores]
+    means = np.stack([one.bootstrap_distribution for one in of_runs])
+
+    def mean_of_drawn(runs: Scores, axis: int) -> Scores:
+        """The mean of runs that have been drawn, each with episodes drawn anew."""
+        draws = generator.integers(RESAMPLES, size=runs.shape)
+        return means[runs.astype(np.intp), draws].mean(axis=axis)
+
+    over_all = _resampled((np.arange(len(scores)),), mean_of_drawn, generator) if len(scores) > 1 else of_runs[0]
+    lo, hi = over_all.confidence_interval
     mean = float(np.mean([one.mean() for one in scores]))
-    return Interval(mean, lo, hi, len(scores), sum(map(len, scores)))
+    return Interval(mean, float(lo), float(hi), len(scores), sum(map(len, scores)))
+
+
+def _resampled(data: tuple[Scores], statistic: Callable[..., Any], generator: np.random.Generator) -> Any:
+    return stats.bootstrap(
+        data, statistic, vectorized=True, n_resamples=RESAMPLES, batch=1000, confidence_level=CONFIDENCE,
+        method="percentile", rng=generator,
+    )  # fmt: skip

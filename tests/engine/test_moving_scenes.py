@@ -31,8 +31,7 @@ def overlap(world: World) -> float:
 def test_moving_scenes() -> None:
     """Soak: 10^5 scenes with 1 to 5 balls, 20 s each; a command before every piece of them.
 
-    What uses up its budget does so in due time, but for one or two in ten thousand: balls that a kick drives to and fro
-    in a gap of 1e-10 m or less.
+    What uses up its budget does so in due time: a thousand events take some nanoseconds at the least.
     """
     counts: Counter[str] = Counter()
     deepest, fastest, jams = -1.0, 0.0, list[int]()
@@ -64,7 +63,7 @@ def test_moving_scenes() -> None:
         counts["budget" if BUDGET in seen else "crushed" if CRUSHED in seen else "ok"] += 1
     print(dict(counts), f"deepest {deepest:.2g} m, fastest {fastest:.5g} m/s, jams {jams}")  # noqa: T201
     assert fastest <= 1.01 * MAX_SPEED  # it may fall a little faster
-    assert len(jams) <= 2e-4 * counts.total(), jams
+    assert not jams
     # Piles of balls and slow rolling, all of it in small hops.
     assert counts["budget"] <= 0.1 * counts.total()
 

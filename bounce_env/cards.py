@@ -49,7 +49,10 @@ class PaddleEnv(BounceEnv):
     upper half of the field, with gaps that the ball passes; from level 10 on that on a rail moves, at 0.1 to 0.4 m/s.
     Train on some, such as `num_levels=200`, and measure on others: `num_levels=0, start_level=1_000_000`.
 
-    Reward: 1 for each hit of a bumper. Nothing for survival.
+    Reward: 1 for each hit of a bumper ("score"). Nothing for survival. With `reward="dense"` besides, in every step,
+    gamma Phi(s') - Phi(s), where Phi = -(distance along the rail from the paddle's middle to the ball) / (diagonal of
+    the field), and 0 when the ball is lost: potential-based shaping, under which the best policy stays the best for an
+    agent that discounts by the same `gamma`.
 
     Start: the ball at 40 % of the field's height, x uniform over the middle 60 % of its width, 1.5 m/s at 30 to 150
     degrees, all from the episode's seed; the paddle in the middle. Options of `reset`: `position`, `velocity`,
@@ -58,17 +61,18 @@ class PaddleEnv(BounceEnv):
     End: terminated when the ball drains; truncated after `time_limit` seconds of play (or, never seen in play, when
     more than 10 000 events fall into one step: `end_reason` "budget").
 
-    Info: each step `score` (the sum of rewards), `ball` (0) and, with levels, `level`. At an episode's end also
+    Info: each step `score` (bumpers hit so far), `ball` (0) and, with levels, `level`. At an episode's end also
     `end_reason`, `points_bumpers`, `bounces`, `touches` (hits of the paddle), `speed_capped` (bounces at the limit) and
     `game_seconds`.
 
     Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; None: "paddle", or with levels
-    "paddle_levels"), `num_levels` (None: no levels), `start_level` (0), `action`
-    ("continuous"), `frame_skip` (2, in units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit`
-    (120.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height`
-    (of a frame in pixels), `trail` (0.0; seconds of the ball's way, bounces included, that a frame shows, fading),
-    `show_bounces` (False; whether `render` shows, after a step with bounces, the last of them in place of the step's
-    end). A vector env also takes `num_envs`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
+    "paddle_levels"), `num_levels` (None: no levels), `start_level` (0), `action` ("continuous"), `reward` ("score"),
+    `gamma` (0.99, of the dense reward), `frame_skip` (2, in units of 1/60 s), `repeat_action_probability` (0.0, per
+    1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array",
+    "human"), `width`, `height` (of a frame in pixels), `trail` (0.0; seconds of the ball's way, bounces included, that
+    a frame shows, fading), `show_bounces` (False; whether `render` shows, after a step with bounces, the last of them
+    in place of the step's end). A vector env also takes `num_envs`, `num_threads` (1), `autoreset_mode` (NEXT_STEP),
+    `copy` (True).
 
     Versions: v0, first release.
     """
@@ -78,6 +82,8 @@ class PaddleEnv(BounceEnv):
         *,
         scene: str | PathLike[str] | Scene | None = None,
         action: Literal["continuous", "discrete"] = "continuous",
+        reward: Literal["score", "dense"] = "score",
+        gamma: float = 0.99,
         frame_skip: int = 2,
         repeat_action_probability: float = 0.0,
         time_limit: float | None = 120.0,
@@ -93,6 +99,8 @@ class PaddleEnv(BounceEnv):
         options = PaddleOptions(
             scene=scene,
             action=action,
+            reward=reward,
+            gamma=gamma,
             frame_skip=frame_skip,
             repeat_action_probability=repeat_action_probability,
             time_limit=time_limit,

@@ -44,6 +44,7 @@ class BounceVecEnv(VecEnv):
         self.metadata = envs.metadata
         self.spec = envs.spec
         self._lengths = np.zeros(n_envs, np.int64)
+        self._returns = np.zeros(n_envs)
         if seed is not None:
             self.seed(seed)
 
@@ -52,6 +53,7 @@ class BounceVecEnv(VecEnv):
         given = any(seed is not None for seed in self._seeds)
         observations, info = self._envs.reset(seed=self._seeds if given else None, options=self._option_rows())
         self._lengths[:] = 0
+        self._returns[:] = 0.0
         self.reset_infos = self._rows(info)
         self._reset_seeds()
         self._reset_options()
@@ -66,6 +68,7 @@ class BounceVecEnv(VecEnv):
         observations, rewards, terminated, truncated, info = self._envs.step(self._actions)
         dones = terminated | truncated
         self._lengths += 1
+        self._returns += rewards
         infos: list[dict[str, Any]] = self._rows(info)
         for w in np.flatnonzero(dones).tolist():
             self.reset_infos[w] = infos[w]
@@ -74,11 +77,11 @@ class BounceVecEnv(VecEnv):
             infos[w]["terminal_observation"] = info["final_obs"][w]
             infos[w]["TimeLimit.truncated"] = bool(truncated[w] and not terminated[w])
             infos[w]["episode"] = {
-                "r": infos[w]["score"],
+                "r": round(float(self._returns[w]), 6),  # as Monitor does
                 "l": int(self._lengths[w]),
                 "t": infos[w]["game_seconds"],
             }
-            self._lengths[w] = 0
+            self._lengths[w], self._returns[w] = 0, 0.0
         return observations, rewards.astype(np.float32), dones, infos
 
     def close(self) -> None:

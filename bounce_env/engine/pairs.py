@@ -40,6 +40,14 @@ def difference(ax: Feature, ay: Feature, bx: Feature, by: Feature) -> tuple[Feat
     return ax - bx, ay - by
 
 
+@function
+def _leaving(x: float, y: float, gx: Feature, gy: Feature, reach: float) -> float:
+    """Acceleration [m/s^2] that draws a ball at (x, y) off another one at the origin; < 0: it presses it on it."""
+    if gx is None:
+        return 0.0
+    return (x * gx + y * gy) / reach
+
+
 @routine
 def plan_pairs(state: State, tables: Tables, pairs: Table, w: int, k: int) -> None:
     """Set when ball `k` hits each other ball, as long as both keep to their present flights."""
@@ -71,8 +79,13 @@ def _meeting(state: State, tables: Tables, w: int, k: int, j: int) -> tuple[floa
     y = moved(one.y, one.vy, ay, s) - moved(other.y, other.vy, by, t)
     ux, uy, vx, vy = sped(one.vx, ax, s), sped(one.vy, ay, s), sped(other.vx, bx, t), sped(other.vy, by, t)
     reach, noise = 2.0 * head.ball_radius, _noise(one, other, ux, uy, vx, vy, head)
-    if _keeps_touching(x, y, ux - vx, uy - vy, gx, gy, reach + slack, noise):
-        return math.inf, 0.0
+    if x * x + y * y <= (reach + slack) * (reach + slack) and abs(x * (ux - vx) + y * (uy - vy)) <= noise * reach:
+        # They touch, and neither close on each other nor come apart by more than rounding.
+        leaving = _leaving(x, y, gx, gy, reach)
+        if leaving >= 0.0:
+            return math.inf, 0.0
+        if leaving < -2.0 * PRESSING * _weight(one, other):
+            return hi, lo  # a search would not find a hit of balls that are a little deep in each other
     after = circle_time(x, y, ux - vx, uy - vy, gx, gy, reach, slack, horizon)
     if not after <= horizon or after == math.inf:
         return math.inf, 0.0
@@ -80,23 +93,15 @@ def _meeting(state: State, tables: Tables, w: int, k: int, j: int) -> tuple[floa
 
 
 @function
-def _noise(one: Record, other: Record, vx: float, vy: float, ux: float, uy: float, head: Record) -> float:
-    """Two balls that close slower than this [m/s] do not hit each other: rounding, or next to nothing under gravity."""
-    g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
-    return ULPS_OF_SPEED * (abs(vx) + abs(vy) + abs(ux) + abs(uy) + math.sqrt(g * head.ball_radius))
+def _weight(one: Record, other: Record) -> float:
+    """The larger of the accelerations [m/s^2] that two balls are under."""
+    return max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
 
 
 @function
-def _keeps_touching(
-    x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, reach: float, noise: float
-) -> bool:
-    """Whether two balls touch, and neither close on each other by more than rounding nor are pressed together."""
-    square = x * x + y * y
-    if square > reach * reach or abs(x * vx + y * vy) > noise * reach:
-        return False
-    if gx is None:
-        return True
-    return x * gx + y * gy >= 0.0
+def _noise(one: Record, other: Record, vx: float, vy: float, ux: float, uy: float, head: Record) -> float:
+    """Two balls that close slower than this [m/s] do not hit each other: rounding, or next to nothing under gravity."""
+    return ULPS_OF_SPEED * (abs(vx) + abs(vy) + abs(ux) + abs(uy) + math.sqrt(_weight(one, other) * head.ball_radius))
 
 
 @function
@@ -191,8 +196,7 @@ def _count_of_pair(pair: Record, one: Record, other: Record, head: Record, hi: f
 @function
 def _longest_way(one: Record, other: Record, speed: float, t: float) -> float:
     """No shorter than what [m] two balls move in `t` seconds that are no faster [m/s] than this between their hits."""
-    g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
-    return (speed + g * t) * t
+    return (speed + _weight(one, other) * t) * t
 
 
 @function
@@ -252,7 +256,7 @@ def _exchange(
 @function
 def _least_rebound(one: Record, other: Record, nx: float, ny: float, head: Record) -> float:
     """The slowest [m/s] that one of two balls leaves the other one which it is pressed on; 0 where it is not."""
-    g = max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
+    g = _weight(one, other)
     if (one.ax - other.ax) * nx + (one.ay - other.ay) * ny >= -PRESSING * g:
         return 0.0
     return max(head.rest_speed, ROLLING * math.sqrt(g * 2.0 * head.ball_radius))

@@ -28,6 +28,8 @@ class PaddleOptions(Options):
     """Of the paddle game."""
 
     action: Literal["continuous", "discrete"] = "continuous"
+    reward: Literal["score", "dense"] = "score"
+    gamma: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] = 0.99
     time_limit: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)] | None = 120.0
     num_levels: Annotated[StrictInt, Field(ge=0, le=END_OF_LEVELS)] | None = None
     start_level: Annotated[StrictInt, Field(ge=0, lt=END_OF_LEVELS)] = 0

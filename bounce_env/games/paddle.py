@@ -13,7 +13,7 @@ from bounce_env.engine.layout import OUT, Array, State, Tables
 from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
 from bounce_env.engine.parts import offset_at
 from bounce_env.engine.trig import sin_cos
-from bounce_env.engine.view import ball_now
+from bounce_env.engine.view import ball_now, core_now
 from bounce_env.games.actions import Continuous, Discrete, clipped
 from bounce_env.games.episode import (
     DRAINED,
@@ -114,8 +114,31 @@ def begin_level(rules: Rules, worlds: Worlds, w: int) -> None:
 
 
 @function
+def potential(rules: Rules, worlds: Worlds, w: int) -> float:
+    """-1 to 0: the less, the further the paddle's middle is along its rail from beneath the ball; 0 when it is lost."""
+    if worlds.episodes[w].end == DRAINED:
+        return 0.0
+    state, tables = worlds.state, worlds.tables
+    field = rules.fields[state.worlds[w].scene]
+    x, y, _, _ = ball_now(state, tables, w, 0)
+    x0, y0, x1, y1 = core_now(state.motions, tables.parts, tables.turns, state.ends, w, state.worlds[w], field.part)
+    away = (x - 0.5 * (x0 + x1)) * field.rail_ux + (y - 0.5 * (y0 + y1)) * field.rail_uy
+    return -abs(away) / field.across
+
+
+@function
 def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     """One step of world `w`: the paddle moves at its action times its greatest speed. Returns the reward."""
+    if rules.shaping == 0.0:
+        return _play(rules, worlds, actions, w)
+    before = potential(rules, worlds, w)
+    points = _play(rules, worlds, actions, w)
+    return points + rules.gamma * potential(rules, worlds, w) - before
+
+
+@function
+def _play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
+    """The same, without shaping: returns the points."""
     state, tables, episode = worlds.state, worlds.tables, worlds.episodes[w]
     clear_hits(state, w)
     resume(state, w)
@@ -131,15 +154,15 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
         code = run(state, tables, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
         if code != DONE or state.balls[w, 0].status == OUT:
             break
-    reward = count_points(rules, worlds, w)
+    points = count_points(rules, worlds, w)
     if state.balls[w, 0].status == OUT:
         episode.end = DRAINED
     elif code != DONE:
         episode.end = OUT_OF_BUDGET
     elif episode.frames >= rules.pace.limit:
         episode.end = TIME_LIMIT
-    episode.score += reward
-    return reward
+    episode.score += points
+    return points
 
 
 @function
@@ -151,6 +174,8 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     Most steps are such. What it does is what `play` does, without the code for what does not happen: a small loop over
     these and another one over the rest run several times faster than one loop over both.
     """
+    if rules.shaping > 0.0:
+        return False
     state, tables, results = worlds.state, worlds.tables, worlds.results
     episode, world = worlds.episodes[w], state.worlds[w]
     frames = episode.frames + rules.pace.frame_skip

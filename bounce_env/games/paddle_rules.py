@@ -27,6 +27,8 @@ OBSERVATION_SIZE = 5
 FIELD = record(
     x="f8", width="f8", y="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
     x_scale="f8", y_scale="f8", rail_scale="f8",  # [1/m] from metres to the observation
+    rail_ux="f8", rail_uy="f8",  # unit vector along the paddle's rail
+    across="f8",  # [m] from corner to corner of the field
     paddle="i8", part="i8",  # its element, and which of the parts it is
 )  # fmt: skip
 
@@ -41,6 +43,8 @@ class Rules(NamedTuple):
     levels: Levels
     points: Array  # (scenes, elements) float64: for a hit of each element
     pace: Pace
+    shaping: float  # 1 where the reward is shaped by how far the paddle is from beneath the ball, otherwise 0
+    gamma: float  # of the shaping
 
 
 @function
@@ -51,6 +55,8 @@ def borrow_rules(rules: Rules) -> Rules:
         borrow_levels(rules.levels),
         borrow(rules.points),
         rules.pace,
+        rules.shaping,
+        rules.gamma,
     )
 
 
@@ -86,11 +92,15 @@ def new_rules(scene: Scene, options: PaddleOptions) -> Rules:
     paddle = next(i for i, e in enumerate(scene.elements) if isinstance(e, Paddle))
     rail = scene.elements[paddle]
     assert isinstance(rail, Paddle)
-    span = direction(rail.rail_start, rail.rail_end)[2]
+    ux, uy, span = direction(rail.rail_start, rail.rail_end)
     part = [i for i, _ in scene.parts].index(paddle)
+    across = math.sqrt(width * width + height * height)
+    seen = (x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, ux, uy, across, paddle, part)
     return Rules(
-        np.array([(x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, paddle, part)], FIELD),
+        np.array([seen], FIELD),
         levels_of(scene, field, options.num_levels, options.start_level),
         np.array([[POINTS * isinstance(e, Bumper) for e in scene.elements]]),
         pace_of(options),
+        float(options.reward == "dense"),
+        options.gamma,
     )

@@ -14,6 +14,7 @@ from bounce_env.engine.world import World
 
 SECONDS = 20.0
 EVENTS = 20_000  # in one call
+ONCE_WRONG = (13591, 22133, 31157, 31402, 33229)  # time stood still, or a ball sank into another one
 
 
 def overlap(world: World) -> float:
@@ -35,7 +36,7 @@ def test_moving_scenes() -> None:
     """
     counts: Counter[str] = Counter()
     deepest, fastest, jams = -1.0, 0.0, list[int]()
-    for seed in range(soak_count(150, 100_000)):
+    for seed in (*ONCE_WRONG, *range(soak_count(150, 100_000))):
         if seed % 1000 == 0:
             print(seed, dict(counts), f"deepest {deepest:.2g} m, fastest {fastest:.5g} m/s", jams, flush=True)  # noqa: T201
         rng = np.random.default_rng(seed)

@@ -14,7 +14,10 @@ PADDLE, PINBALL, WALLS = "Bounce/Paddle-v0", "Bounce/Pinball-v0", "Bounce/Walls-
 MODES = ("NEXT_STEP", "SAME_STEP", "DISABLED")
 KINDS = [
     {"action": action, "repeat_action_probability": p} for action, p in product(("continuous", "discrete"), (0.0, 0.25))
-] + [{"action": "continuous", "repeat_action_probability": 0.25, "num_levels": 40}]
+] + [
+    {"action": "continuous", "repeat_action_probability": 0.25, "num_levels": 40},
+    {"action": "continuous", "repeat_action_probability": 0.0, "reward": "dense"},
+]
 PINBALL_KINDS = [
     {"action": action, "repeat_action_probability": p} for action, p in product(("discrete", "buttons"), (0.0, 0.25))
 ]
@@ -29,7 +32,8 @@ def name(value: object) -> str | None:
     """How pytest calls a variant's kwargs."""
     if isinstance(value, dict):
         sticky = "sticky" if value["repeat_action_probability"] else "plain"
-        return f"{value.get('action') or value['reward']}-{sticky}{'-levels' if 'num_levels' in value else ''}"
+        levels = "levels" if "num_levels" in value else None
+        return "-".join(filter(None, (value.get("action"), value.get("reward"), sticky, levels)))
     return None
 
 

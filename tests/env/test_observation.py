@@ -85,6 +85,42 @@ def test_a_ball_shot_down_from_the_top_at_the_cap_stays_in_bounds():
     assert observation[3] < -0.98 * env.observation_space.high[3]
 
 
+def potential(observation):
+    """-(distance along the rail from the paddle's middle to the ball) / (diagonal of the field)."""
+    ball = WIDTH * (observation[0] + 1) / 2
+    paddle = (LEFT_STOP + RIGHT_STOP) / 2 + observation[4] * (RIGHT_STOP - LEFT_STOP) / 2
+    return -abs(ball - paddle) / math.hypot(WIDTH, TOP - BOTTOM)
+
+
+@pytest.mark.parametrize("gamma", [0.9, 0.99, 1.0])
+def test_the_dense_reward_is_the_score_with_shaping_that_telescopes(gamma):
+    plain, dense = gym.make(PADDLE), gym.make(PADDLE, reward="dense", gamma=gamma)
+    plain.reset(seed=1)
+    observation, _ = dense.reset(seed=1)
+    first, bumpers, difference, discount, ended = potential(observation), 0.0, 0.0, 1.0, False
+    while not ended:
+        before, action = potential(observation), 0.2 * follow(observation[None])  # too slow for the eighth
+        again, points, *_ = plain.step(action)
+        observation, reward, ended, _, info = dense.step(action)
+        assert_same(observation, again)
+        after = 0.0 if ended else potential(observation)
+        assert reward - points == pytest.approx(gamma * after - before, abs=1e-6)
+        bumpers, difference, discount = bumpers + points, difference + discount * (reward - points), discount * gamma
+    assert info["score"] == info["points_bumpers"] == bumpers > 0.0
+    assert difference == pytest.approx(-first, abs=1e-5)
+
+
+def test_where_time_is_up_the_potential_stays():
+    env = gym.make(PADDLE, reward="dense", gamma=0.9, time_limit=0.2)
+    first, _ = env.reset(seed=3)
+    difference = 0.0
+    for k in range(6):
+        observation, reward, terminated, truncated, _ = env.step([1.0])
+        difference += 0.9**k * reward
+    assert (terminated, truncated) == (False, True)
+    assert difference == pytest.approx(0.9**6 * potential(observation) - potential(first), abs=1e-6)
+
+
 @pytest.mark.parametrize("kwargs", KINDS, ids=name)
 def test_observations_are_the_cards_formulas_of_the_state(kwargs):
     env = gym.make(PADDLE, **kwargs)
@@ -193,10 +229,11 @@ def test_single_infos_are_plain_and_as_on_the_card(kwargs):
             assert [type(v) for v in (reward, terminated, truncated)] == [float, bool, bool]
             kinds = each_step | AT_THE_END if ended else each_step
             assert {key: type(value) for key, value in info.items()} == kinds
-            assert (info["score"], info["ball"]) == (total, 0)
+            score = info["score"] if kwargs.get("reward") == "dense" else total
+            assert (info["score"], info["ball"]) == (score, 0)
         assert info["end_reason"] == ("drained" if terminated else "time_limit")
         assert terminated != truncated
-        assert info["points_bumpers"] == total
+        assert info["points_bumpers"] == info["score"]
         assert info["game_seconds"] == pytest.approx(steps / 30, abs=1 / 30 + 1e-9)
         assert info["bounces"] >= info["points_bumpers"] + info["touches"]
         reasons.append(info["end_reason"])

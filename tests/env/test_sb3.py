@@ -3,7 +3,7 @@
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import KINDS, PADDLE, assert_same, name, scripted
+from rollouts import KINDS, PADDLE, PINBALL, WALLS, assert_same, name, scripted
 from stable_baselines3 import PPO
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
@@ -56,6 +56,26 @@ def test_steps_equal_dummy_vec_env_over_single_envs(kwargs):
         flags += [info["TimeLimit.truncated"] for info, done in zip(step[3], step[2], strict=True) if done]
     assert 5 < sum(flags) < len(flags) - 5  # ends of both kinds were compared
     assert_same(ours.reset(), theirs.reset())  # without a new seed the streams go on
+
+
+@pytest.mark.parametrize("env_id", [PINBALL, WALLS])
+@pytest.mark.parametrize("reward", ["dense", None])
+def test_an_episodes_return_is_the_sum_of_its_rewards(env_id, reward):
+    """Not its score, which is something else where a reward is shaped or a lost ball costs."""
+    kwargs = {} if reward is None else {"reward": reward}
+    ours = BounceVecEnv(env_id, WORLDS, seed=7, time_limit=6.0, **kwargs)
+    theirs = DummyVecEnv([lambda: Monitor(gym.make(env_id, time_limit=6.0, **kwargs))] * WORLDS)
+    theirs.seed(7)
+    ours.reset()
+    theirs.reset()
+    returns = []
+    for actions in scripted_for(theirs, 400):
+        step = theirs.step(actions)
+        same_step(ours.step(actions), step)
+        returns += [(info["episode"]["r"], info["score"]) for info, done in zip(step[3], step[2], strict=True) if done]
+    assert len(returns) >= WORLDS
+    if reward == "dense":
+        assert all(total != score for total, score in returns)
 
 
 def test_an_episode_ends_with_what_sb3_bootstraps_from():

@@ -28,7 +28,15 @@ from bounce_env.engine.layout import (
 from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.resolve import bounce_from_all, count_bounce, log, take_soft, take_vague
 from bounce_env.engine.search import plan_rest, plan_standing
-from bounce_env.engine.tolerances import CLEARANCE, CORNER, STANDING, ULPS_OF_LENGTH, WEIGHTLESS
+from bounce_env.engine.tolerances import (
+    BOUNCES_WITHOUT_ROOM,
+    CLEARANCE,
+    CORNER,
+    NARROW,
+    STANDING,
+    ULPS_OF_LENGTH,
+    WEIGHTLESS,
+)
 from bounce_env.engine.touch import collect_touches, keep_outside
 
 
@@ -47,9 +55,12 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
         ball.slack = max(ball.slack, CORNER * ULPS_OF_LENGTH * extent)
     contact, support, settling = ball.contact, ball.support, ball.settling
     ball.settling = 0
-    collect_touches(state, tables, w, k)
-    if tables.parts is not None:
-        keep_outside(ball, state.touches, w)
+    if ball.confined > BOUNCES_WITHOUT_ROOM:
+        _collect_all_around(state, tables, w, k, extent)
+    else:
+        collect_touches(state, tables, w, k)
+        if tables.parts is not None:
+            keep_outside(ball, state.touches, w)
     if settling == JAMMED:
         duration = _stand(state, w, k, extent, ledger)
     else:
@@ -62,6 +73,16 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
         ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
     plan_rest(state, tables, w, k)
     plan_pairs(state, tables, state.pairs, w, k)
+
+
+@function
+def _collect_all_around(state: State, tables: Tables, w: int, k: int, extent: float) -> None:
+    """List all surfaces that leave a ball no room as touched. It stays where it is: on one of them."""
+    ball = state.balls[w, k]
+    slack = ball.slack
+    ball.slack = max(slack, NARROW * extent)
+    collect_touches(state, tables, w, k)
+    ball.slack = slack
 
 
 @function

@@ -11,7 +11,7 @@ from bounce_env.engine.arc import crossing_time
 from bounce_env.engine.baa import open_for
 from bounce_env.engine.flight import bending, dot, grazes, moved, slow_on_circle, sped, swept
 from bounce_env.engine.jit import Feature, function, routine
-from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, ULPS_OF_SPEED, WEIGHTLESS
+from bounce_env.engine.tolerances import CORNER, SEARCH_STEPS, STANDING, ULPS_OF_SPEED, WEIGHTLESS
 
 
 @function
@@ -62,6 +62,9 @@ def line_time(
     nx, ny = -facing * uy, facing * ux
     gap = x * nx + y * ny - reach
     rate = vx * nx + vy * ny
+    if side == 0.0 and gap >= -CORNER * slack:
+        # A disc that touches several surfaces is put on one of them, and may be that deep in another.
+        gap = max(gap, 0.0)
     behind = gap < -slack or (gap <= slack and side == -facing)
     if abs(gap) <= slack:
         if abs(rate) <= ULPS_OF_SPEED * (abs(vx) + abs(vy)):

@@ -86,6 +86,7 @@ BALL = record(
     slack="f8",  # [m] what counts as touching at that instant
     vague="f8",  # [m/s] by how much another ball's push may miss its direction at that instant
     touched="i8",  # how many surfaces it touched when it was last resolved
+    confined="i8",  # how often in a row it has bounced without having room for it
     hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
     end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene
     sensor_after="f8", sensor_kind="i8", sensor_index="i8",

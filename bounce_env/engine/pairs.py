@@ -212,7 +212,7 @@ def _jam(state: State, tables: Tables, w: int, k: int, j: int, nx: float, ny: fl
     ball, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
     if ball.status == CRUSHED:
         return
-    if is_caught(ball, tables.scenes[world.scene]):
+    if is_caught(ball, tables.scenes[world.scene]) and ball.squeezes < SQUEEZES:
         ball.squeezes = SQUEEZES
         return
     if ball.settling == SETTLES:

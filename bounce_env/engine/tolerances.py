@@ -63,6 +63,11 @@ BALANCE = 0.01 * ROLLING
 # the smallest hop on a curve is 16 of them high.
 CORNER = 64.0
 
+# A ball that between two bounces has flown no further than this share of the scene's extent, so many times in a row, is
+# between surfaces that leave it no room: it is taken to touch all of them.
+NARROW = 2.0**-34
+BOUNCES_WITHOUT_ROOM = 1024
+
 # A ball that a closing part has struck and something opposite to it has thrown back so often, within this share of the
 # scene's extent, is crushed: 6e-5 of it, a tenth of a millimetre on a table.
 CLEARANCE = 2.0**-14

@@ -1,0 +1,53 @@
+"""A ball between surfaces that leave it no room: time runs on, and it gets nowhere that it must not."""
+
+import math
+
+import numpy as np
+import pytest
+from stability_case import new_world
+
+from bounce_env import Ball, Scene, Wall
+from bounce_env.engine.layout import OK
+from bounce_env.engine.world import World
+
+R, CAP = 0.125, 50.0
+
+
+def corridor(gap: float, g: tuple[float, float] = (0.0, 0.0), **material: float) -> World:
+    """A ball between two walls that kick, which are as far apart as it is wide, and so much [m] more."""
+    top, bottom = Wall((1, 2 * R + gap), (-1, 2 * R + gap), kick=1.0, **material), Wall((-1, 0), (1, 0), kick=1.0)
+    scene = Scene(gravity=g, ball=Ball(radius=R), max_speed=CAP, elements=(bottom, top))
+    world = new_world(scene)
+    world.reset(position=(0.0, R), velocity=(0.25, 1.0))
+    return world
+
+
+@pytest.mark.parametrize("g", [(0.0, 0.0), (0.0, -1.0), (0.5, -1.0), (0.0, 1.0)])
+@pytest.mark.parametrize("gap", [1e-15, 1e-13, 1e-11])
+def test_time_runs_on_in_a_corridor_as_wide_as_the_ball(gap: float, g: tuple[float, float]) -> None:
+    """Up to 2.5e16 bounces a second: after a thousand of them it slides along, as fast as that has left it."""
+    world = corridor(gap, g)
+    world.advance(1e-3)
+    ((x0, _),), ((vx, vy),), before = world.position, world.velocity, world.time
+    for _ in range(8):
+        world.advance(0.125, max_events=20_000)
+        assert world.status.tolist() == [OK]
+        assert R - 1e-12 <= world.position[0, 1] <= R + gap + 1e-12
+        assert np.isfinite(world.velocity).all()
+    assert vy == pytest.approx(0.0, abs=1e-3)
+    t = world.time - before
+    assert world.position[0, 0] == pytest.approx(x0 + vx * t + g[0] * t * t / 2, abs=1e-6)
+    assert world.velocity[0, 0] == pytest.approx(vx + g[0] * t, abs=1e-6)
+
+
+def test_in_a_corridor_with_room_each_bounce_happens() -> None:
+    """A micrometre: at the cap of speed 5e7 bounces a second, in which the walls take nothing from the way along."""
+    world = corridor(1e-6)
+    world.advance(1e-3)
+    before, speed = world.time, abs(world.velocity[0, 1])
+    rows = world.advance(1e-4, ledger=True)
+    assert world.time == before + 1e-4
+    assert speed > 0.9 * CAP
+    assert math.hypot(*world.velocity[0]) == pytest.approx(CAP)
+    assert len(rows) == pytest.approx(1e-4 * speed / 1e-6, abs=2)
+    assert set(np.sign(rows["vy1"])) == {-1.0, 1.0}

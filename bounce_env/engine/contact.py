@@ -6,7 +6,7 @@ anchors/numerics.md, check 2).
 
 import math
 
-from bounce_env.engine.approach import closing_speed, is_soft, press_of
+from bounce_env.engine.approach import closing_speed, is_soft, press_of, towards
 from bounce_env.engine.arrive import face_crossings
 from bounce_env.engine.hold import bear, find_contact, is_slow
 from bounce_env.engine.hops import hop_on
@@ -29,6 +29,8 @@ from bounce_env.engine.pairs import plan_pairs
 from bounce_env.engine.resolve import bounce_from_all, count_bounce, log, take_soft, take_vague
 from bounce_env.engine.search import plan_rest, plan_standing
 from bounce_env.engine.tolerances import (
+    BOUNCES_AFTER_STANDING,
+    BOUNCES_BEFORE_STANDING,
     BOUNCES_WITHOUT_ROOM,
     CLEARANCE,
     CORNER,
@@ -61,6 +63,13 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
         collect_touches(state, tables, w, k)
         if tables.parts is not None:
             keep_outside(ball, state.touches, w)
+    if (
+        settling != JAMMED
+        and ball.confined > BOUNCES_BEFORE_STANDING
+        and _is_left_alone(ball, state.touches, w, extent)
+    ):
+        _stop(state, w, k, ledger)
+        settling = JAMMED
     if settling == JAMMED:
         duration = _stand(state, w, k, extent, ledger)
     else:
@@ -86,14 +95,40 @@ def _collect_all_around(state: State, tables: Tables, w: int, k: int, extent: fl
 
 
 @function
+def _is_left_alone(ball: Record, touches: Table, w: int, extent: float) -> bool:
+    """Whether none of the surfaces that a ball touches comes nearer while it would stand."""
+    left_alone, seconds = ball.touched > 0, _standing_time(ball, extent)
+    for i in range(ball.touched):
+        closing = towards(touches[w, i])
+        left_alone = left_alone and (closing <= 0.0 or closing * seconds <= NARROW * extent)
+    return left_alone
+
+
+@function
+def _stop(state: State, w: int, k: int, ledger: Table) -> None:
+    """Stop a ball that keeps bouncing between surfaces which leave it no room."""
+    ball = state.balls[w, k]
+    vx, vy = ball.vx, ball.vy
+    ball.vx, ball.vy = 0.0, 0.0
+    ball.confined = BOUNCES_BEFORE_STANDING - BOUNCES_AFTER_STANDING
+    count_bounce(state, w, k, state.touches[w, 0], vx, vy, ledger)
+
+
+@function
+def _standing_time(ball: Record, extent: float) -> float:
+    """How long [s] falling by a clearance takes."""
+    g = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+    return math.sqrt(2.0 * CLEARANCE * extent / g) if g > WEIGHTLESS else math.inf
+
+
+@function
 def _stand(state: State, w: int, k: int, extent: float, ledger: Table) -> float:
     """Let a ball that is jammed stand for as long as falling by a clearance would take; returns that duration [s]."""
     ball = state.balls[w, k]
     if ball.support >= 0:
         _log_end(state, w, k, ball.support, ball.vx, ball.vy, ledger)
     ball.contact, ball.rides, ball.support, ball.ax, ball.ay = HELD, -1, -1, 0.0, 0.0
-    g = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
-    return math.sqrt(2.0 * CLEARANCE * extent / g) if g > WEIGHTLESS else math.inf
+    return _standing_time(ball, extent)
 
 
 @function

@@ -68,6 +68,10 @@ CORNER = 64.0
 NARROW = 2.0**-34
 BOUNCES_WITHOUT_ROOM = 1024
 
+# If that does not end it, it stands after so many, as balls do that keep hitting each other; and again after some more.
+BOUNCES_BEFORE_STANDING = 2048
+BOUNCES_AFTER_STANDING = 64
+
 # A ball that a closing part has struck and something opposite to it has thrown back so often, within this share of the
 # scene's extent, is crushed: 6e-5 of it, a tenth of a millimetre on a table.
 CLEARANCE = 2.0**-14

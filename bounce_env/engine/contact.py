@@ -63,11 +63,7 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
         collect_touches(state, tables, w, k)
         if tables.parts is not None:
             keep_outside(ball, state.touches, w)
-    if (
-        settling != JAMMED
-        and ball.confined > BOUNCES_BEFORE_STANDING
-        and _is_left_alone(ball, state.touches, w, extent)
-    ):
+    if settling != JAMMED and _is_stuck(ball, state.touches, w, extent):
         _stop(state, w, k, ledger)
         settling = JAMMED
     if settling == JAMMED:
@@ -95,13 +91,16 @@ def _collect_all_around(state: State, tables: Tables, w: int, k: int, extent: fl
 
 
 @function
-def _is_left_alone(ball: Record, touches: Table, w: int, extent: float) -> bool:
-    """Whether none of the surfaces that a ball touches comes nearer while it would stand."""
-    left_alone, seconds = ball.touched > 0, _standing_time(ball, extent)
+def _is_stuck(ball: Record, touches: Table, w: int, extent: float) -> bool:
+    """Whether a ball keeps bouncing without room, and none of the surfaces comes nearer while it would stand."""
+    if ball.touched == 0 or ball.confined <= BOUNCES_BEFORE_STANDING:
+        return False
+    seconds = _standing_time(ball, extent)
     for i in range(ball.touched):
         closing = towards(touches[w, i])
-        left_alone = left_alone and (closing <= 0.0 or closing * seconds <= NARROW * extent)
-    return left_alone
+        if closing > 0.0 and not closing * seconds <= NARROW * extent:
+            return False
+    return True
 
 
 @function

@@ -60,14 +60,14 @@ def report(played: Mapping[str, Episodes]) -> dict[str, dict[str, float]]:
 def table(played: Mapping[str, Episodes]) -> str:
     """The same as text, with the statistics; one row a player."""
     lines = [
-        f"{'player':<16}{'mean score':>11}{'95 % interval':>18}{'episodes':>10}"
+        f"{'player':<16}{'mean score':>11}{'95 % interval':>22}{'episodes':>10}"
         f"{'median':>8}{'seconds':>9}{'at limit':>10}{'score/touch':>13}"
     ]
     for name, episodes in played.items():
         e, s = estimate(episodes.scores), statistics(episodes)
         interval = f"{e.lo:.2f} to {e.hi:.2f}"
         lines.append(
-            f"{name:<16}{e.mean:>11.2f}{interval:>18}{e.n:>10}{s['median_score']:>8.1f}{s['mean_seconds']:>9.1f}"
+            f"{name:<16}{e.mean:>11.2f}{interval:>22}{e.n:>10}{s['median_score']:>8.1f}{s['mean_seconds']:>9.1f}"
             f"{s['share_at_time_limit']:>10.1%}{s['score_per_touch']:>13.2f}"
         )
     return "\n".join(lines)

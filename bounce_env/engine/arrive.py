@@ -6,14 +6,14 @@ Sides matter to a ball of no radius, which can be on a wall, and to what is cros
 import math
 
 from bounce_env.engine.ends import ends_of, height_over, is_dragged
-from bounce_env.engine.flight import bending, fly, moved, sped, touch_tolerance
+from bounce_env.engine.flight import bending, fly, magnitude, moved, sped, touch_tolerance
 from bounce_env.engine.impact import leaves_end
 from bounce_env.engine.instant import since
 from bounce_env.engine.jit import Feature, Record, Table, function
 from bounce_env.engine.layout import CLOSED, NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE, State, Tables
 from bounce_env.engine.parts import core_at, is_off, side_of_part, turn_of
 from bounce_env.engine.search import wall_normal
-from bounce_env.engine.tolerances import SEARCH_ENDS, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import CORNER, ROOM_TO_MEET, SEARCH_ENDS, ULPS_OF_LENGTH, ULPS_OF_SPEED
 from bounce_env.engine.touch import on_capsule
 
 
@@ -45,7 +45,14 @@ def end_flight(
     ball: Record, tables: Tables, scene: int, gx: Feature, gy: Feature, t: float, hi: float, lo: float
 ) -> None:
     """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
-    ball.slack = touch_tolerance(tables.scenes[scene].extent, ball.vx, ball.vy, gx, gy, t)
+    extent = tables.scenes[scene].extent
+    ball.slack = touch_tolerance(extent, ball.vx, ball.vy, gx, gy, t)
+    way = (abs(ball.vx) + abs(ball.vy) + magnitude(gx, gy) * t) * t
+    if way > CORNER * ULPS_OF_LENGTH * extent:
+        ball.confined = 0
+    ball.strayed += way
+    if ball.strayed > ROOM_TO_MEET * extent:
+        ball.strayed, ball.legs = 0.0, ball.legs + 1
     fly(ball, gx, gy, t, hi, lo)
     if t > 0.0:  # in no time nothing is rounded, and a push may wait to be resolved
         _keep_along(ball, tables.faces, scene)

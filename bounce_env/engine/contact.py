@@ -34,7 +34,6 @@ from bounce_env.engine.tolerances import (
     BOUNCES_WITHOUT_ROOM,
     CLEARANCE,
     CORNER,
-    NARROW,
     STANDING,
     ULPS_OF_LENGTH,
     WEIGHTLESS,
@@ -52,17 +51,14 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
     if abs(ball.vx) + abs(ball.vy) < STANDING:
         ball.vx, ball.vy = 0.0, 0.0
     extent = tables.scenes[state.worlds[w].scene].extent
-    if tables.gravity is not None and is_slow(ball, extent):
+    if ball.confined > BOUNCES_WITHOUT_ROOM or (tables.gravity is not None and is_slow(ball, extent)):
         # Between several surfaces the last bounces go to and fro: what lies within their reach counts as touched.
         ball.slack = max(ball.slack, CORNER * ULPS_OF_LENGTH * extent)
     contact, support, settling = ball.contact, ball.support, ball.settling
     ball.settling = 0
-    if ball.confined > BOUNCES_WITHOUT_ROOM:
-        _collect_all_around(state, tables, w, k, extent)
-    else:
-        collect_touches(state, tables, w, k)
-        if tables.parts is not None:
-            keep_outside(ball, state.touches, w)
+    collect_touches(state, tables, w, k)
+    if tables.parts is not None:
+        keep_outside(ball, state.touches, w)
     if settling != JAMMED and _is_stuck(ball, state.touches, w, extent):
         _stop(state, w, k, ledger)
         settling = JAMMED
@@ -81,16 +77,6 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
 
 
 @function
-def _collect_all_around(state: State, tables: Tables, w: int, k: int, extent: float) -> None:
-    """List all surfaces that leave a ball no room as touched. It stays where it is: on one of them."""
-    ball = state.balls[w, k]
-    slack = ball.slack
-    ball.slack = max(slack, NARROW * extent)
-    collect_touches(state, tables, w, k)
-    ball.slack = slack
-
-
-@function
 def _is_stuck(ball: Record, touches: Table, w: int, extent: float) -> bool:
     """Whether a ball keeps bouncing without room, and none of the surfaces comes nearer while it would stand."""
     if ball.touched == 0 or ball.confined <= BOUNCES_BEFORE_STANDING:
@@ -98,7 +84,7 @@ def _is_stuck(ball: Record, touches: Table, w: int, extent: float) -> bool:
     seconds = _standing_time(ball, extent)
     for i in range(ball.touched):
         closing = towards(touches[w, i])
-        if closing > 0.0 and not closing * seconds <= NARROW * extent:
+        if closing > 0.0 and not closing * seconds <= ball.slack:
             return False
     return True
 

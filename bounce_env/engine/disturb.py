@@ -19,7 +19,8 @@ def place(state: State, tables: Tables, w: int, k: int, x: float, y: float, vx: 
     ball.hi, ball.lo = world.time_hi, world.time_lo
     ball.status = OK
     ball.contact, ball.rides, ball.support, ball.settling, ball.rolling = FLYING, -1, -1, 0, -1
-    ball.struck, ball.squeezes, ball.vague, ball.confined = -1, 0, 0.0, 0
+    ball.struck, ball.squeezes, ball.vague = -1, 0, 0.0
+    ball.confined, ball.strayed, ball.legs = 0, 0.0, 0
     ball.slack = touch_tolerance(head.extent, 0.0, 0.0, None, None, 0.0)
     take_sides(state, tables, w, k)
     accelerate(state, tables, w, k)

@@ -86,7 +86,8 @@ BALL = record(
     slack="f8",  # [m] what counts as touching at that instant
     vague="f8",  # [m/s] by how much another ball's push may miss its direction at that instant
     touched="i8",  # how many surfaces it touched when it was last resolved
-    confined="i8",  # how often in a row it has bounced without having room for it
+    confined="i8",  # how often it has bounced since it last flew any way to speak of, see BOUNCES_WITHOUT_ROOM
+    strayed="f8", legs="i8",  # [m] the way that it has come, at most, in this leg; how many legs of ROOM_TO_MEET before
     hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
     end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene
     sensor_after="f8", sensor_kind="i8", sensor_index="i8",
@@ -106,9 +107,7 @@ TOUCH = record(
 )  # fmt: skip
 PAIR = record(  # of two balls
     hi="f8", lo="f8",  # when they hit each other while both keep to their flights
-    # How often they have done so within a clearance, the way [m] that they went meanwhile, at most; when they did last,
-    # and how fast [m/s] they were then, together.
-    meets="i8", way="f8", last_hi="f8", last_lo="f8", speed="f8",
+    meets="i8", legs="i8",  # how often they have done so while these were all the legs of both
 )  # fmt: skip
 COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
 ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes

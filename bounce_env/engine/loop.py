@@ -12,6 +12,7 @@ from bounce_env.engine.crossing import cross
 from bounce_env.engine.crush import crush, meet_crushed
 from bounce_env.engine.drive import part_stops, rest_parts
 from bounce_env.engine.instant import before, since
+from bounce_env.engine.jams import forget_meetings
 from bounce_env.engine.jit import Record, Table, function
 from bounce_env.engine.layout import (
     BUDGET,
@@ -25,10 +26,10 @@ from bounce_env.engine.layout import (
     State,
     Tables,
 )
-from bounce_env.engine.pairs import collide, first_pair, forget_meetings
+from bounce_env.engine.pairs import collide, first_pair
 from bounce_env.engine.parts import offset_at, plan_zones, stop_instant
 from bounce_env.engine.search import plan_parts, pull
-from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, NARROW, ULPS_OF_SPEED, UNSURE
+from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
 
 # How a run of the loop ends.
 DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
@@ -173,12 +174,9 @@ def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     snap(state, tables, w, k)
     arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
     at_once = _is_over_at_once(ball, t) and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
-    bounces, way = state.worlds[w].bounces, abs(ball.x - x0) + abs(ball.y - y0)
+    bounces = state.worlds[w].bounces
     resolve(state, tables, w, k, at_once, ledger)
-    if way > NARROW * tables.scenes[scene].extent:
-        ball.confined = 0
-    elif state.worlds[w].bounces > bounces:
-        ball.confined += 1
+    ball.confined += state.worlds[w].bounces > bounces
     if ball.status == CRUSHED:
         crush(state, tables, state.motions, tables.parts, w, k, ledger)
 

@@ -12,7 +12,7 @@ import numpy as np
 from bounce_env.engine.layout import Array, State
 from bounce_env.scene import Scene
 
-VERSION = 1
+VERSION = 2
 
 _MAGIC = b"bounce_env world"
 _HEAD = struct.Struct("<16sI32s")

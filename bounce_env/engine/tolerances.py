@@ -29,15 +29,18 @@ SEARCH_ENDS = 1e-9
 # Bounces resolved at one instant before the ball is left to the next event (and so to the event budget).
 BOUNCES_AT_ONE_INSTANT = 32
 
-# The same for hits of any two balls. What then still goes on does so between balls that are held in place by what else
-# they touch: they stand for as long as it takes to fall by a clearance (CLEARANCE), and are then looked at again.
+# Hits of any two balls at one instant, and hits of one and the same two while neither has come further than this share
+# of the scene's extent (to and fro in a gap of less than 1e-9 of it, or thrown at each other again and again from next
+# to no distance). Beyond these numbers such a hit has no rebound any more; where it goes on for so many times as many,
+# between balls that something holds, they stand for as long as it takes to fall by a clearance (CLEARANCE), and again
+# until they get away.
 MEETINGS_AT_ONE_INSTANT = 256
+MEETINGS_WITHOUT_ROOM = 1024
+ROOM_TO_MEET = 2.0**-20
+HITS_BEFORE_STANDING = 4
 
-# The same for hits of one and the same two balls, between the first and last of which neither can have moved by more
-# than a clearance: they go to and fro in a gap of less than 1e-7 of the scene, or are thrown at each other again and
-# again from next to no distance. Two that have just stood, and go on like that, stand again after so many hits.
-MEETINGS_IN_A_CLEARANCE = 1024
-MEETINGS_AFTER_STANDING = 64
+# Of so many hits at one instant those that are slower than this share of the fastest speed wait.
+LEFT_OVER = 2.0**-20
 
 # Nearer than this share of its way to a stop, a part may or may not have reached it: the stop's instant decides.
 UNSURE = 2.0**-40
@@ -63,12 +66,10 @@ BALANCE = 0.01 * ROLLING
 # the smallest hop on a curve is 16 of them high.
 CORNER = 64.0
 
-# A ball that between two bounces has flown no further than this share of the scene's extent, so many times in a row, is
-# between surfaces that leave it no room: it is taken to touch all of them.
-NARROW = 2.0**-34
+# A ball that has bounced so many times in a row, each time after a way of no more than CORNER tolerances, is between
+# surfaces that leave it no room: it touches all that are so near. If that does not end it, it stands, as balls do that
+# keep hitting each other; and again after some more.
 BOUNCES_WITHOUT_ROOM = 1024
-
-# If that does not end it, it stands after so many, as balls do that keep hitting each other; and again after some more.
 BOUNCES_BEFORE_STANDING = 2048
 BOUNCES_AFTER_STANDING = 64
 

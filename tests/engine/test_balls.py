@@ -158,9 +158,9 @@ def squeezed(gap: float, g: float) -> World:
 
 
 @pytest.mark.parametrize("g", [0.0, 1.0])
-@pytest.mark.parametrize("gap", [1e-10, 1e-9, 1e-8])
+@pytest.mark.parametrize("gap", [1e-12, 1e-11, 1e-10])
 def test_balls_in_a_gap_of_next_to_nothing_stand(gap: float, g: float) -> None:
-    """Fifty times in a nanosecond or so they would hit each other. Time runs on instead."""
+    """A hundred times in a nanosecond or more they would hit each other. Time runs on instead."""
     world = squeezed(gap, g)
     events = 0
     for _ in range(8):
@@ -169,14 +169,14 @@ def test_balls_in_a_gap_of_next_to_nothing_stand(gap: float, g: float) -> None:
         assert world.position[:, 0] == pytest.approx([R, 3 * R], abs=2.0 * gap)
     assert world.velocity.tolist() == [[0.0, 0.0], [0.0, 0.0]]
     if g == 0.0:
-        assert events == pytest.approx(3 * 1024, rel=0.02)  # once: then nothing moves them
+        assert 2 * 4096 < events < 4 * 4096  # once: then nothing moves them
 
 
 def test_balls_in_a_narrow_gap_do_not_stand() -> None:
-    """A hundredth of a millimetre: each hit at its instant, 2.5 million a second."""
+    """A hundredth of a millimetre: each hit at its instant, 5 million a second."""
     world = squeezed(1e-5, 0.0)
     world.advance(0.01)
-    before, speeds = world.time, set()
+    before = world.time
     rows = world.advance(0.002, ledger=True)
     pairs = rows[(rows["element"] > 1) & (rows["ball"] == 0)]
     speeds = set(np.abs(np.append(pairs["vx0"], pairs["vx1"])).tolist())

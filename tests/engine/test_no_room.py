@@ -23,9 +23,9 @@ def corridor(gap: float, g: tuple[float, float] = (0.0, 0.0), **material: float)
 
 
 @pytest.mark.parametrize("g", [(0.0, 0.0), (0.0, -1.0), (0.5, -1.0), (0.0, 1.0)])
-@pytest.mark.parametrize("gap", [1e-15, 1e-13, 1e-11])
+@pytest.mark.parametrize("gap", [1e-15, 1e-14, 1e-13])
 def test_time_runs_on_in_a_corridor_as_wide_as_the_ball(gap: float, g: tuple[float, float]) -> None:
-    """Up to 2.5e16 bounces a second: after a thousand of them it slides along, as fast as that has left it."""
+    """Up to 5e16 bounces a second: after a thousand of them it slides along, as fast as that has left it."""
     world = corridor(gap, g)
     world.advance(1e-3)
     ((x0, _),), ((vx, vy),), before = world.position, world.velocity, world.time

@@ -77,7 +77,10 @@ class PairChecks(RowChecks):
         nx, ny = row.nx, row.ny
         b, closing = self.scene.ball.b**2, -((row.vx0 - row.ux) * nx + (row.vy0 - row.uy) * ny)
         if self._is_first(number):  # both go on otherwise after it
-            self.pressed = {self._presses(mine, theirs, nx, ny) for mine in self._pulls() for theirs in other._pulls()}
+            along = (row.vx0 - row.ux) * ny - (row.vy0 - row.uy) * nx
+            turn = along**2 / (2.0 * self.scene.ball.radius)  # what it takes to keep to the other ball
+            pulls = [(mine, theirs) for mine in self._pulls() for theirs in other._pulls()]
+            self.pressed = {self._presses(mine, theirs, nx, ny, turn) for mine, theirs in pulls}
             other.pressed = self.pressed
         pressed = self.pressed
         gains = []
@@ -102,8 +105,8 @@ class PairChecks(RowChecks):
         return [self.walk.borne_by(way.mode, way.bearer, *a) for way in self.ways]
 
     @staticmethod
-    def _presses(mine: Vector, theirs: Vector, nx: float, ny: float) -> bool:
-        return (mine[0] - theirs[0]) * nx + (mine[1] - theirs[1]) * ny < 0.0
+    def _presses(mine: Vector, theirs: Vector, nx: float, ny: float, turn: float) -> bool:
+        return (mine[0] - theirs[0]) * nx + (mine[1] - theirs[1]) * ny + turn < 0.0
 
     def _go_on(self, row: Row) -> None:
         """A small hop pushes the ball into nothing that it touches, and has no row that says so."""

@@ -23,14 +23,13 @@ EXACT = 1e-12  # what one formula may lose
 STANDING = 1e-290  # [m/s] slower than this is not at all
 
 CLEARANCE = 2.0**-14  # of the extent: a crushed ball has no more room than this
-MEETINGS = 256  # hits of any balls at one instant after which those that go on are stopped
-MEETINGS_OF_TWO = 1024  # the same for two balls, within a clearance
-MEETINGS_MORE = 64  # the same for two that have just stood
+MEETINGS = 4 * 256  # hits of any balls at one instant after which those that go on are stopped
+MEETINGS_OF_TWO = 4 * 1024  # the same for two balls in all
 
 
 class Meetings(NamedTuple):
     """Hits of balls up to a row: of any at one instant, or at instants between which none moves by more than a touch;
-    and of the two of the row, while neither has moved by more than a clearance.
+    and of the two of the row, at any time.
     """
 
     at_once: int
@@ -69,8 +68,8 @@ class Setting:
         """Those that lead up to the row of this number."""
         elements, last = len(self.scene.elements), self.rows[number]
         met = [row for row in self.rows[:number] if row.kind == BOUNCE and row.element >= elements]
-        two = {last.ball, last.element - elements}
-        return Meetings(self._at_once(met), self._of_two([r for r in met if {r.ball, r.element - elements} == two]))
+        two = (last.ball, last.element - elements)
+        return Meetings(self._at_once(met), sum((row.ball, row.element - elements) == two for row in met))
 
     def _at_once(self, met: Sequence[Row]) -> int:
         last, count, speed = -math.inf, 0, 0.0
@@ -80,17 +79,6 @@ class Setting:
             last = row.time
             count += row.ball > row.element - len(self.scene.elements)
             speed = max(speed, sum(map(abs, (*row.before, row.ux, row.uy))))
-        return count
-
-    def _of_two(self, met: Sequence[Row]) -> int:
-        last, count, speed, way = 0.0, 0, 0.0, 0.0
-        for row in met:
-            before = sum(map(abs, (*row.before, row.ux, row.uy)))
-            way += self._way(max(speed, before), row.time - last)
-            if way > CLEARANCE * self.extent:
-                count, way = MEETINGS_OF_TWO - MEETINGS_MORE if count >= MEETINGS_OF_TWO else 0, 0.0
-            last, speed = row.time, before
-            count += row.ball > row.element - len(self.scene.elements)
         return count
 
     def _way(self, speed: float, t: float) -> float:

@@ -150,6 +150,40 @@ def test_a_pile_stays_where_it_is() -> None:
         assert world.status.tolist() == [OK] * 3
 
 
+@pytest.mark.parametrize("speed", [2.0, 5.0])
+def test_a_ball_that_flies_over_another_one_is_not_held_back(speed: float) -> None:
+    """Level, from the top of one that lies on the floor: v^2 / 2R > g, so that it never presses on it."""
+    world = started(replace(FREE, gravity=(0.0, -9.81)), [(0.0, -2 + R), (0.0, -2 + 3 * R)], [(0.0, 0.0), (speed, 0.0)])
+    rows = world.advance(0.05, ledger=True)
+    assert (rows["element"] == 0).all()  # the one on the floor
+    assert world.position[1] == pytest.approx([0.05 * speed, -2 + 3 * R - 9.81 * 0.05**2 / 2], abs=1e-14)
+
+
+@pytest.mark.parametrize("g", [0.0, -1.0])
+@pytest.mark.parametrize("speed", [0.0, 1.0])
+def test_balls_without_room_keep_the_way_along(g: float, speed: float) -> None:
+    """Two in a gap of 1e-10 m, to and fro at 0.1 m/s, and both along it: there nothing stops them."""
+    sides = Wall((0, -9), (0, 9)), Wall((4 * R + 1e-10, 9), (4 * R + 1e-10, -9))
+    scene = Scene(gravity=(0.0, g), ball=Ball(radius=R), elements=sides)
+    world = started(scene, [(R, 0.0), (3 * R, 0.0)], [(0.1, speed), (-0.1, speed)])
+    world.advance(1e-5)
+    t = world.time
+    assert world.velocity[:, 1] == pytest.approx(speed + g * t, abs=1e-9)
+    assert world.position[:, 1] == pytest.approx(speed * t + g * t * t / 2, abs=1e-9)
+
+
+def test_a_row_that_collapses_in_free_flight_keeps_its_momentum() -> None:
+    """Six inelastic balls run into each other: ever more hits in ever less time, and nothing that could stop them."""
+    speeds = [(0.3 - 0.1 * k, 0.0) for k in range(6)]
+    world = started(replace(FREE, ball=Ball(radius=R, b=0.5)), [(0.3 * k - 1.0, 0.0) for k in range(6)], speeds)
+    for _ in range(8):
+        world.advance(0.5, max_events=20_000)
+        assert world.status.tolist() == [OK] * 6
+        assert world.velocity[:, 0].sum() == pytest.approx(0.3, abs=1e-14)
+    assert world.velocity[:, 0] == pytest.approx([0.05] * 6, abs=1e-6)
+    assert (np.diff(world.position[:, 0]) >= 2 * R - 1e-11).all()
+
+
 def squeezed(gap: float, g: float) -> World:
     """Two balls between walls that kick, with so much room [m] more than they need: soon as fast as max_speed."""
     sides = Wall((0, -1), (0, 1), kick=1.0), Wall((4 * R + gap, 1), (4 * R + gap, -1), kick=1.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from stability_case import new_world
 
-from bounce_env import Ball, Scene, Wall
+from bounce_env import Ball, Bumper, Scene, Wall
 from bounce_env.engine.layout import OK
 from bounce_env.engine.world import World
 
@@ -51,3 +51,30 @@ def test_in_a_corridor_with_room_each_bounce_happens() -> None:
     assert math.hypot(*world.velocity[0]) == pytest.approx(CAP)
     assert len(rows) == pytest.approx(1e-4 * speed / 1e-6, abs=2)
     assert set(np.sign(rows["vy1"])) == {-1.0, 1.0}
+
+
+@pytest.mark.parametrize("radius", [0.0, 1e-4])
+@pytest.mark.parametrize("miss", [1e-9, 1e-8, 1e-7])
+def test_a_narrow_wedge_gives_back_what_comes_in(radius: float, miss: float) -> None:
+    """A thousandth of a radian, and a line that passes its apex that near: pi / angle bounces, and no speed is lost."""
+    c, s = math.cos(5e-4), math.sin(5e-4)
+    scene = Scene(gravity=(0, 0), ball=Ball(radius=radius), elements=(Wall((0, 0), (c, -s)), Wall((c, s), (0, 0))))
+    world, apex, angle = new_world(scene), radius / s, math.asin(2.0 * miss)
+    world.reset(position=(apex + 0.5, 0.0), velocity=(-math.cos(angle), math.sin(angle)))
+    rows = world.advance(1.0, ledger=True)
+    assert len(rows) == pytest.approx(math.pi / 1e-3, abs=1)
+    assert math.hypot(*world.velocity[0]) == pytest.approx(1.0, abs=1e-11)
+    assert world.position[0, 0] == pytest.approx(apex + 0.5, abs=1e-6)
+
+
+def test_a_ball_that_hops_on_one_spot_has_room() -> None:
+    """An eighth of a metre high, again and again, 1e-11 m beside a bumper that it never touches."""
+    beside, above = 0.5 + 1e-11, 4e-6
+    scene = Scene(
+        gravity=(0.0, -1.0), ball=Ball(radius=0.1), elements=(Wall((-1, 0), (1, 0)), Bumper((beside, 0.1 + above), 0.4))
+    )
+    world = new_world(scene)
+    world.reset(position=(0.0, 0.1), velocity=(0.0, 0.5))
+    world.advance(1100.0)
+    assert world.position[0, 0] == 0.0
+    assert world.velocity[0, 0] == 0.0

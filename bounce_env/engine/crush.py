@@ -3,12 +3,12 @@
 import math
 
 from bounce_env.engine.disturb import disturb
-from bounce_env.engine.drive import block, end_rides, hold_still, replan_part, resume_part
+from bounce_env.engine.drive import block, end_rides, hold_still, replan_part, resume_part, turns_back
 from bounce_env.engine.ends import ends_of
 from bounce_env.engine.jit import Record, Table, function, routine
 from bounce_env.engine.layout import CRUSH, CRUSHED, HELD, OK, State, Tables
 from bounce_env.engine.pairs import plan_pairs
-from bounce_env.engine.parts import core_at, plan_zones, side_of_part, surface_velocity, turn_of
+from bounce_env.engine.parts import core_at, kept_offset, plan_zones, side_of_part, surface_velocity, turn_of
 from bounce_env.engine.resolve import log
 from bounce_env.engine.search import plan_parts, pull, resolve_next
 from bounce_env.engine.tolerances import CLEARANCE, ULPS_OF_SPEED
@@ -19,14 +19,14 @@ from bounce_env.engine.touch import on_capsule
 def crush(state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, ledger: Table) -> None:
     """Stop the part that crushes ball `k`, and hold the ball until a command opens the gap.
 
-    A part that shuttles turns back instead.
+    A part that shuttles turns back instead, where it has room for it.
     """
     if motions is None or parts is None:
         return
     ball, world = state.balls[w, k], state.worlds[w]
     m = ball.struck
-    part = parts[world.scene, m]
-    if part.shuttle > 0.0:
+    motion, part = motions[w, m], parts[world.scene, m]
+    if turns_back(motion, part, kept_offset(motion, part, world.time_hi, world.time_lo)):
         ball.status, ball.struck, ball.squeezes = OK, -1, 0
         resolve_next(ball)
     else:

@@ -10,6 +10,7 @@ from bounce_env.engine.jit import Record, Table, function, routine
 from bounce_env.engine.layout import CRUSHED, OUT, PART_STOPS, State, Tables
 from bounce_env.engine.parts import core_at, kept_offset, side_of_part, stop_instant, surface_velocity, turn_of
 from bounce_env.engine.search import plan_parts
+from bounce_env.engine.tolerances import CLEARANCE
 
 
 @function
@@ -147,17 +148,25 @@ def _let_caught_go(state: State, w: int, m: int) -> None:
 
 
 @function
+def turns_back(motion: Record, part: Record, offset: float) -> bool:
+    """Whether a part that stops at `offset` [m] turns back: a shuttle, but not between a ball and its other stop."""
+    room = offset if motion.velocity > 0.0 else part.span - offset
+    return part.shuttle > 0.0 and room > CLEARANCE * part.span
+
+
+@function
 def _halt_capsule(
     motion: Record, part: Record, world: Record, turn: int, offset: float, hi: float, lo: float, ledger: Table
 ) -> None:
-    """Let a part stop at `offset`: it stands there, or turns back if it is a shuttle."""
+    """Let a part stop at `offset`: it stands there, or turns back if it is a shuttle that has room for it."""
     motion.hi, motion.lo, motion.offset = hi, lo, offset
     x, y, ux, uy, _, front = core_at(part, motion, turn, None, hi, lo)
     # Of a part that turns the ledger tells of its tip, of one that slides of its middle.
     rx, ry = (front * ux, front * uy) if turn != 0 else (0.0, 0.0)
     vx, vy = surface_velocity(motion, part, turn, None, ux, uy, front, rx, ry)
-    motion.velocity = -motion.velocity if part.shuttle > 0.0 else 0.0
-    if part.shuttle > 0.0:
+    turns = turns_back(motion, part, offset)
+    motion.velocity = -motion.velocity if turns else 0.0
+    if turns:
         motion.command = motion.velocity
     new_vx, new_vy = surface_velocity(motion, part, turn, None, ux, uy, front, rx, ry)
     _log_stop(ledger, world, part.element, hi, x + rx, y + ry, vx, vy, new_vx, new_vy)

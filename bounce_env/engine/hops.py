@@ -4,6 +4,7 @@ from bounce_env.engine.approach import closing_speed, press_of, push_off, rollin
 from bounce_env.engine.jit import Table, function
 from bounce_env.engine.layout import State, Tables
 from bounce_env.engine.resolve import count_bounce, fastest_closing
+from bounce_env.engine.tolerances import BOUNCES_BEFORE_STANDING
 
 
 @function
@@ -14,7 +15,8 @@ def hop_on(state: State, tables: Tables, w: int, k: int, at_once: bool, bounces:
     """
     if tables.gravity is not None or tables.arcs is not None:
         _roll(state, tables, w, k, ledger)
-    if at_once and state.worlds[w].bounces == bounces:
+    # Where something closes on it, a ball without room is bounced from a corner at once, for ever.
+    if at_once and (state.worlds[w].bounces == bounces or state.balls[w, k].confined > BOUNCES_BEFORE_STANDING):
         _leave_part(state, tables.parts, w, k, ledger)
 
 
@@ -73,6 +75,7 @@ def _leave_part(state: State, parts: Table, w: int, k: int, ledger: Table) -> No
         return
     touch = state.touches[w, index]
     vx0, vy0 = ball.vx, ball.vy
-    push_off(ball, touch, touch.least)
+    # Without gravity there is no smallest rebound, but rounding, which had told it of the hit.
+    push_off(ball, touch, max(touch.least, 2.0 * slow_speed(ball, touch)))
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
     _keep_off(state, w, k, ledger)

@@ -7,7 +7,7 @@ import pytest
 from stability_case import new_world
 
 from bounce_env import Ball, Bumper, Scene, Wall
-from bounce_env.engine.layout import OK
+from bounce_env.engine.layout import CRUSHED, OK
 from bounce_env.engine.world import World
 
 R, CAP = 0.125, 50.0
@@ -78,3 +78,18 @@ def test_a_ball_that_hops_on_one_spot_has_room() -> None:
     world.advance(1100.0)
     assert world.position[0, 0] == 0.0
     assert world.velocity[0, 0] == 0.0
+
+
+def test_a_shuttle_without_room_to_turn_back_stands() -> None:
+    """It sets off into a ball that lies against a wall, a nanometre away: it would turn back there for ever."""
+    shuttle = Bumper((0.0, 0.0), 0.25, rail_end=(1.0, 0.0), speed=0.5, name="shuttle")
+    side = Wall((0.25 + 2 * R + 1e-9, 1.0), (0.25 + 2 * R + 1e-9, -1.0))
+    world = new_world(Scene(gravity=(0.0, 0.0), ball=Ball(radius=R), elements=(shuttle, side)))
+    world.reset(position=(0.25 + R + 1e-9, 0.0), velocity=(0.0, 0.0))
+    rows = world.advance(10.0, ledger=True)
+    assert world.status.tolist() == [CRUSHED]
+    assert len(rows) < 100
+    assert world.cores[0, :2] == pytest.approx([0.0, 0.0], abs=1e-8)
+    world.enable("shuttle", False)  # it lets go
+    world.advance(1.0)
+    assert world.status.tolist() == [OK]

@@ -40,7 +40,7 @@ def test_moving_scenes() -> None:
     """
     counts: Counter[str] = Counter()
     deepest, fastest, jams = -1.0, 0.0, list[int]()
-    for seed in (*ONCE_WRONG, *range(soak_count(150, 100_000))):
+    for n, seed in enumerate((*ONCE_WRONG, *range(soak_count(150, 100_000)))):
         if seed % 1000 == 0:
             print(seed, dict(counts), f"deepest {deepest:.2g} m, fastest {fastest:.5g} m/s", jams, flush=True)  # noqa: T201
         rng = np.random.default_rng(seed)
@@ -65,12 +65,13 @@ def test_moving_scenes() -> None:
                 world.advance(1.0, max_events=EVENTS)
                 jams += [seed] if world.time <= before + 1e-7 else []
                 break
-        counts["budget" if BUDGET in seen else "crushed" if CRUSHED in seen else "ok"] += 1
+        came_to = "budget" if BUDGET in seen else "crushed" if CRUSHED in seen else "ok"
+        counts["once wrong" if n < len(ONCE_WRONG) else came_to] += 1
     print(dict(counts), f"deepest {deepest:.2g} m, fastest {fastest:.5g} m/s, jams {jams}")  # noqa: T201
     assert fastest <= 1.01 * MAX_SPEED  # it may fall a little faster
     assert not jams
     # Piles of balls and slow rolling, all of it in small hops.
-    assert counts["budget"] <= 0.1 * counts.total() + len(ONCE_WRONG)
+    assert counts["budget"] <= 0.1 * (counts.total() - counts["once wrong"])
 
 
 def test_points_between_walls() -> None:

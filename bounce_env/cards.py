@@ -1,14 +1,10 @@
 """The games as Gymnasium environments; the docstring of each class is its card."""
 
-from os import PathLike
-from typing import Literal
-
 from bounce_env.env import BounceEnv
 from bounce_env.games.options import PaddleOptions, PinballOptions, WallsOptions
 from bounce_env.games.paddle import PaddleGame
 from bounce_env.games.pinball import PinballGame
 from bounce_env.games.walls import WallsGame
-from bounce_env.scene import Scene
 
 
 class PaddleEnv(BounceEnv):
@@ -77,45 +73,8 @@ class PaddleEnv(BounceEnv):
     Versions: v0, first release.
     """
 
-    def __init__(
-        self,
-        *,
-        scene: str | PathLike[str] | Scene | None = None,
-        action: Literal["continuous", "discrete"] = "continuous",
-        reward: Literal["score", "dense"] = "score",
-        gamma: float = 0.99,
-        frame_skip: int = 2,
-        repeat_action_probability: float = 0.0,
-        time_limit: float | None = 120.0,
-        num_levels: int | None = None,
-        start_level: int = 0,
-        obs: Literal["state", "pixels"] = "state",
-        render_mode: str | None = None,
-        width: int | None = None,
-        height: int | None = None,
-        trail: float = 0.0,
-        show_bounces: bool = False,
-    ) -> None:
-        options = PaddleOptions(
-            scene=scene,
-            action=action,
-            reward=reward,
-            gamma=gamma,
-            frame_skip=frame_skip,
-            repeat_action_probability=repeat_action_probability,
-            time_limit=time_limit,
-            num_levels=num_levels,
-            start_level=start_level,
-        )
-        super().__init__(
-            PaddleGame(options),
-            obs=obs,
-            render_mode=render_mode,
-            width=width,
-            height=height,
-            trail=trail,
-            show_bounces=show_bounces,
-        )
+    game_type = PaddleGame
+    options_type = PaddleOptions
 
 
 class PinballEnv(BounceEnv):
@@ -202,43 +161,8 @@ class PinballEnv(BounceEnv):
     Versions: v0, first release.
     """
 
-    def __init__(
-        self,
-        *,
-        scene: str | PathLike[str] | Scene | None = None,
-        action: Literal["discrete", "buttons"] = "discrete",
-        reward: Literal["dense", "score"] = "dense",
-        nudge: bool = False,
-        balls: int = 3,
-        frame_skip: int = 2,
-        repeat_action_probability: float = 0.0,
-        time_limit: float | None = 120.0,
-        obs: Literal["state", "pixels"] = "state",
-        render_mode: str | None = None,
-        width: int | None = None,
-        height: int | None = None,
-        trail: float = 0.0,
-        show_bounces: bool = False,
-    ) -> None:
-        options = PinballOptions(
-            scene=scene,
-            action=action,
-            reward=reward,
-            nudge=nudge,
-            balls=balls,
-            frame_skip=frame_skip,
-            repeat_action_probability=repeat_action_probability,
-            time_limit=time_limit,
-        )
-        super().__init__(
-            PinballGame(options),
-            obs=obs,
-            render_mode=render_mode,
-            width=width,
-            height=height,
-            trail=trail,
-            show_bounces=show_bounces,
-        )
+    game_type = PinballGame
+    options_type = PinballOptions
 
 
 class WallsEnv(BounceEnv):
@@ -303,38 +227,5 @@ class WallsEnv(BounceEnv):
     Versions: v0, first release.
     """
 
-    def __init__(
-        self,
-        *,
-        scene: str | PathLike[str] | Scene | None = None,
-        reward: Literal["sparse", "dense"] = "sparse",
-        gamma: float = 0.99,
-        balls: int = 5,
-        frame_skip: int = 2,
-        repeat_action_probability: float = 0.0,
-        time_limit: float | None = 90.0,
-        obs: Literal["state", "pixels"] = "state",
-        render_mode: str | None = None,
-        width: int | None = None,
-        height: int | None = None,
-        trail: float = 0.0,
-        show_bounces: bool = False,
-    ) -> None:
-        options = WallsOptions(
-            scene=scene,
-            reward=reward,
-            gamma=gamma,
-            balls=balls,
-            frame_skip=frame_skip,
-            repeat_action_probability=repeat_action_probability,
-            time_limit=time_limit,
-        )
-        super().__init__(
-            WallsGame(options),
-            obs=obs,
-            render_mode=render_mode,
-            width=width,
-            height=height,
-            trail=trail,
-            show_bounces=show_bounces,
-        )
+    game_type = WallsGame
+    options_type = WallsOptions

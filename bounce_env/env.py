@@ -1,7 +1,9 @@
 """The Gymnasium environments: each a batch of one world, with its card as docstring."""
 
-from collections.abc import Mapping
-from typing import Any, Literal
+import sys
+from collections.abc import Mapping, Sequence
+from types import FrameType
+from typing import Any, ClassVar
 
 import gymnasium as gym
 import numpy as np
@@ -14,9 +16,12 @@ from bounce_env.games.batch import Batch
 from bounce_env.games.clone import States
 from bounce_env.games.episode import DISABLED, RUNNING
 from bounce_env.games.game import Game
-from bounce_env.games.start import start_rows
+from bounce_env.games.start import checked_options, start_rows
+from bounce_env.keywords import HasKeywords
+from bounce_env.one_world import plain
 from bounce_env.render import Picture, Window
 from bounce_env.scene import Scene
+from bounce_env.wording import nearest, shown, whole
 
 Observation = npt.NDArray[np.float32] | npt.NDArray[np.uint8]
 
@@ -32,9 +37,48 @@ def action_space(game: Game) -> spaces.Space[Any]:
             return spaces.MultiBinary(count)
 
 
+def checked_render_mode(mode: Any, known: Sequence[str]) -> str | None:
+    """The render mode as it is; raises ValueError for one that there is not."""
+    if mode is not None and (not isinstance(mode, str) or mode not in known):
+        raise ValueError(f"render_mode = {shown(mode)}: must be one of {[None, *known]}{nearest(mode, known)}")
+    return mode
+
+
+def steps_of_time_limit(env: gym.Env[Any, Any]) -> int | None:
+    """After how many steps the TimeLimit wrappers that are resetting `env` right now will cut its episode; None: never.
+
+    An environment does not know what wraps it, and a TimeLimit tells nobody that it cuts an episode: only from the
+    stack of the reset, on which every wrapper stands, can it be learned which step will be the last one, which has to
+    say how the episode ended.
+    """
+    limits = []
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None:
+        if frame.f_code.co_name == "reset":
+            wrapper = frame.f_locals.get("self")
+            if isinstance(wrapper, gym.wrappers.TimeLimit) and wrapper.unwrapped is env:
+                limits.append(wrapper._max_episode_steps)
+        frame = frame.f_back
+    return min(limits, default=None)
+
+
 def world_seed(generator: np.random.Generator) -> np.uint64:
     """The seed of a world's stream of episodes, drawn from a Gymnasium generator."""
     return np.uint64(generator.integers(2**64, dtype=np.uint64))
+
+
+class SeedError(gym.error.Error, ValueError):
+    """A seed that is none: both Gymnasium's error and a ValueError."""
+
+
+def checked_seed(name: str, seed: Any) -> int | None:
+    """A seed as int, or None; raises SeedError for what is neither."""
+    if seed is None:
+        return None
+    try:
+        return whole(name, seed, 0)
+    except ValueError:
+        raise SeedError(f"{name} = {shown(seed)}: must be None or an integer >= 0") from None
 
 
 def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, dict[str, Any]]:
@@ -42,7 +86,7 @@ def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, d
 
     Raises ValueError where it comes with a seed or with others: it says all that they could say.
     """
-    others = dict(options or {})
+    others = checked_options(options)
     snapshot = others.pop("snapshot", None)
     if snapshot is not None and (others or seed is not None):
         besides = ", ".join([*(f"options[{name!r}]" for name in others), *(["seed"] if seed is not None else [])])
@@ -50,29 +94,18 @@ def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, d
     return snapshot, others
 
 
-class BounceEnv(gym.Env[Observation, Any]):
-    """A game as a Gymnasium environment; the games are its subclasses."""
+class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
+    """A game as a Gymnasium environment; the games are its subclasses, whose docstrings name the keywords."""
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 30}  # noqa: RUF012 (Gymnasium's)
+    own_keywords: ClassVar[Mapping[str, Any]] = {"render_mode": None}
 
-    def __init__(
-        self,
-        game: Game,
-        *,
-        obs: Literal["state", "pixels"],
-        render_mode: str | None,
-        width: int | None,
-        height: int | None,
-        trail: float,
-        show_bounces: bool,
-    ) -> None:
-        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-            allowed = [None, *self.metadata["render_modes"]]
-            raise ValueError(f"render_mode = {render_mode!r}: must be one of {allowed}")
+    def __init__(self, **keywords: Any) -> None:
+        game, view, own = self.sorted_out(keywords)
+        self.render_mode: str | None = checked_render_mode(own["render_mode"], self.metadata["render_modes"])
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds)}
-        self.render_mode = render_mode
         self._batch = Batch(game, 1, autoreset=DISABLED)
-        self._frames = Frames(self._batch, obs=obs, width=width, height=height, trail=trail, show_bounces=show_bounces)
+        self._frames = Frames(self._batch, view)
         self.observation_space: spaces.Space[Any] = self._frames.space
         self.action_space = action_space(game)
         self._window: Window | None = None
@@ -92,6 +125,7 @@ class BounceEnv(gym.Env[Observation, Any]):
         `velocity` (vx, vy) [m/s] of the launch and, where the game has levels, the `level` in place of the seed's; or
         alone, without a seed, `snapshot`: what `clone_state` returned, to go on from. Anything else is a ValueError.
         """
+        seed = checked_seed("seed", seed)
         snapshot, others = taken_snapshot(seed, options)
         if snapshot is not None:
             observation = self.restore_state(snapshot)
@@ -103,6 +137,7 @@ class BounceEnv(gym.Env[Observation, Any]):
         if seed is not None or not self._seeded:
             self._batch.seed(0, world_seed(self.np_random))
             self._seeded = True
+        self._batch.limit_steps(steps_of_time_limit(self))
         self._batch.reset(np.ones(1, np.bool_), start)
         self._frames.update((0,))
         self._running = True
@@ -114,12 +149,12 @@ class BounceEnv(gym.Env[Observation, Any]):
         """One step; see the card. Raises ResetNeeded when no episode is running, ValueError for a bad action."""
         if not self._running:
             raise gym.error.ResetNeeded("the episode has ended or not begun: call reset() before step()")
-        ended = self._batch.step(np.asarray(action))
+        ended = self._batch.step(action)
         self._frames.update((0,))
         info = self._info()
         if ended:
             self._running = False
-            info |= {key: _plain(value[0]) for key, value in self._batch.end_info().items()}
+            info |= {key: plain(value[0]) for key, value in self._batch.end_info().items()}
         if self.render_mode == "human":
             self.render()
         r = self._batch.results
@@ -186,7 +221,3 @@ class BounceEnv(gym.Env[Observation, Any]):
         episode, levels = self._batch.episodes[0], self._batch.levels
         info = {"score": float(episode.score), "ball": int(episode.ball)}
         return info if levels is None else info | {"level": int(levels[0])}
-
-
-def _plain(value: Any) -> Any:
-    return value.item() if isinstance(value, np.generic) else value

@@ -1,69 +1,93 @@
 """What is seen of a batch: observations, be they states or pixels, and pictures and frames of its worlds."""
 
-import math
 from collections.abc import Iterable
-from typing import Any, Literal
+from functools import partial
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
+from pydantic import model_validator
+from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.layout import OUT, Array, State
 from bounce_env.engine.view import view
 from bounce_env.games.batch import Batch
+from bounce_env.games.options import CONFIG, options, refuse
 from bounce_env.render import Picture, Renderer
-from bounce_env.render.projection import Projection
+from bounce_env.render.projection import LARGEST_SIDE, Projection
+from bounce_env.scene.base import Spec
+from bounce_env.scene.fields import Allowed, instance_of, one_of, real_number, whole_number
 from bounce_env.way import Flight, Way
 
 Pixels = npt.NDArray[np.uint8]
 
-OBS = ("state", "pixels")
-
 OBSERVED_SIZE = 84
 """Width and height of observed frames for which no size was asked, pixels: as agents for Atari games see."""
 
+LONGEST_TRAIL = 60.0
+"""Seconds of a trail: more would cover the field."""
+
 _MOST_LEVELS = 256
-"""Levels of which renderers are kept."""
+"""Levels and sizes of which renderers are kept."""
+
+
+_PIXELS = f"None, or a whole number from 1 to {LARGEST_SIDE} (pixels)"
+Side = Annotated[int | None, Allowed(_PIXELS, whole_number(1, LARGEST_SIDE, none=True))]
+Seconds = Annotated[
+    float,
+    Allowed(f"a number from 0 to {LONGEST_TRAIL:g} (seconds)", partial(real_number, low=0.0, high=LONGEST_TRAIL)),
+]
+
+
+@options
+@dataclass(frozen=True, kw_only=True, config=CONFIG)
+class ViewOptions(Spec):
+    """What a user may choose of what is seen. Raises ValueError for what is not allowed.
+
+    obs: "state" or "pixels", what an agent is given. width, height: of rendered frames in pixels; see `Projection.fit`
+    for what is left out. obs_width, obs_height: of frames that an agent is given. trail: seconds of the ball's way that
+    are drawn. show_bounces: whether `render` shows the last bounce of a step in place of the step's end.
+    """
+
+    obs: Annotated[Literal["state", "pixels"], one_of("state", "pixels")] = "state"
+    width: Side = None
+    height: Side = None
+    obs_width: Side = None
+    obs_height: Side = None
+    trail: Seconds = 0.0
+    show_bounces: Annotated[bool, Allowed("True or False", instance_of(bool))] = False
+
+    @model_validator(mode="after")
+    def _check_obs_size(self) -> Self:
+        for name in ("obs_width", "obs_height"):
+            if self.obs == "state" and getattr(self, name) is not None:
+                refuse(name, getattr(self, name), 'None where obs is "state": width and height are those of `render`')
+        return self
 
 
 class Frames:
-    """What the worlds of a batch look like.
+    """What the worlds of a batch look like, as `options` say.
 
-    obs: "state" or "pixels", what an agent is given. width, height: of frames in pixels; see `Projection.fit` for what
-    is left out. trail: seconds of the ball's way that are drawn. show_bounces: whether a frame shows the last bounce of
-    its step in place of the step's end. Raises ValueError for what is not allowed.
-
-    Every reset and step is told by `update`. size: (width, height) of a frame, pixels.
+    Every reset and step is told by `update`. size: (width, height) of a rendered frame, pixels.
     """
 
-    def __init__(
-        self,
-        batch: Batch,
-        *,
-        obs: Literal["state", "pixels"],
-        width: int | None,
-        height: int | None,
-        trail: float,
-        show_bounces: bool,
-    ) -> None:
-        if obs not in OBS:
-            raise ValueError(f"obs = {obs!r}: must be one of {', '.join(OBS)}")
-        if isinstance(trail, bool) or not isinstance(trail, int | float) or not 0.0 <= trail < math.inf:
-            raise ValueError(f"trail = {trail!r}: must be a finite number >= 0 (seconds)")
-        if not isinstance(show_bounces, bool):
-            raise ValueError(f"show_bounces = {show_bounces!r}: must be True or False")
-        if obs == "pixels" and width is None and height is None:
-            width = height = OBSERVED_SIZE
-        fit = Projection.fit(batch.game.scenes[0].bounds, width, height)
+    def __init__(self, batch: Batch, options: ViewOptions) -> None:
+        bounds = batch.game.scenes[0].bounds
+        fit = Projection.fit(bounds, options.width, options.height)
         self.size = (fit.width, fit.height)
         self._pixels: Pixels | None = None
-        if obs == "pixels":
-            self._pixels = np.zeros((batch.worlds, fit.height, fit.width, 3), np.uint8)
+        self._observed = self.size
+        if options.obs == "pixels":
+            asked = (options.obs_width, options.obs_height)
+            seen = Projection.fit(bounds, *((OBSERVED_SIZE, OBSERVED_SIZE) if asked == (None, None) else asked))
+            self._observed = (seen.width, seen.height)
+            self._pixels = np.zeros((batch.worlds, seen.height, seen.width, 3), np.uint8)
         self._batch = batch
-        self._trail = float(trail)
-        self._show_bounces = show_bounces
-        self._ways = [Way(self._trail) for _ in range(batch.worlds)] if trail > 0 else []
-        self._renderers: dict[int, Renderer] = {}
+        self._trail = options.trail
+        self._show_bounces = options.show_bounces
+        self._ways = [Way(self._trail) for _ in range(batch.worlds)] if self._trail > 0 else []
+        self._renderers: dict[tuple[int, tuple[int, int]], Renderer] = {}
 
     def __getstate__(self) -> dict[str, Any]:
         # What draws is made anew when it is needed; surfaces can be neither copied nor sent.
@@ -90,7 +114,7 @@ class Frames:
             if self._ways:
                 self._go_on(w)
             if self._pixels is not None:
-                self._pixels[w] = self._drawn(w, self._picture(w, at_bounce=False, score=False))
+                self._pixels[w] = self._drawn(w, self._picture(w, at_bounce=False, score=False), self._observed)
 
     def restart(self, worlds: Iterable[int]) -> None:
         """Some worlds go on from another state: what is known of the ways that their balls have come is not theirs."""
@@ -106,16 +130,16 @@ class Frames:
 
     def frame(self, world: int) -> Pixels:
         """A new picture of a world, (height, width, 3)."""
-        return self._drawn(world, self.picture(world))
+        return self._drawn(world, self.picture(world), self.size)
 
-    def _drawn(self, world: int, picture: Picture) -> Pixels:
-        level = int(self._batch.episodes["level"][world])
-        renderer = self._renderers.get(level)
+    def _drawn(self, world: int, picture: Picture, size: tuple[int, int]) -> Pixels:
+        key = (int(self._batch.episodes["level"][world]), size)
+        renderer = self._renderers.get(key)
         if renderer is None:
             while len(self._renderers) >= _MOST_LEVELS:
                 del self._renderers[next(iter(self._renderers))]
-            renderer = self._renderers[level] = Renderer(
-                self._batch.scene(world), *self.size, targets=self._batch.game.targets
+            renderer = self._renderers[key] = Renderer(
+                self._batch.scene(world), *size, targets=self._batch.game.targets
             )
         return renderer.frame(picture)
 
@@ -140,7 +164,7 @@ class Frames:
             balls=balls[:, :2],
             cores=cores,
             alive=shown.balls["status"][row] != OUT,
-            hits=shown.hits[row, : len(scene.elements)],
+            hits=shown.hits[row, : len(scene.elements)].copy(),
             lit=None if batch.memory is None else batch.game.lamps(batch.memory[w]),
             score=float(batch.episodes[w].score) if score else None,
             targets=batch.target_places(w),

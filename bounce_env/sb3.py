@@ -9,10 +9,10 @@ from gymnasium.vector import AutoresetMode
 from stable_baselines3.common.vec_env import VecEnv
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
 
+from bounce_env.env import checked_seed
+from bounce_env.one_world import OneWorld, row_of
 from bounce_env.vector import BounceVectorEnv
 
-# What SB3 calls the spaces of one world.
-_SINGLE = {"observation_space": "single_observation_space", "action_space": "single_action_space"}
 # SB3's rollouts need a reset in the same step and observations of their own.
 _FIXED = ("autoreset_mode", "copy", "num_envs", "vectorization_mode")
 
@@ -45,7 +45,7 @@ class BounceVecEnv(VecEnv):
         self.spec = envs.spec
         self._lengths = np.zeros(n_envs, np.int64)
         self._returns = np.zeros(n_envs)
-        if seed is not None:
+        if checked_seed("seed", seed) is not None:
             self.seed(seed)
 
     def reset(self) -> VecEnvObs:
@@ -73,7 +73,7 @@ class BounceVecEnv(VecEnv):
         for w in np.flatnonzero(dones).tolist():
             self.reset_infos[w] = infos[w]
             final = info["final_info"]
-            infos[w] = {key: _plain(value[w]) for key, value in final.items() if key[0] != "_"}
+            infos[w] = row_of(final, w)
             infos[w]["terminal_observation"] = info["final_obs"][w]
             infos[w]["TimeLimit.truncated"] = bool(truncated[w] and not terminated[w])
             infos[w]["episode"] = {
@@ -89,18 +89,24 @@ class BounceVecEnv(VecEnv):
         self._envs.close()
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
-        """An attribute of the environment, once per index."""
-        value = getattr(self._envs, _SINGLE.get(attr_name, attr_name))
-        return [value for _ in self._get_indices(indices)]
+        """An attribute of the worlds of `indices`, see `OneWorld`."""
+        return [getattr(world, attr_name) for world in self._worlds(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Not possible for some worlds only: raises NotImplementedError."""
-        raise NotImplementedError("the worlds of a BounceVecEnv share one batch: pass keyword arguments when making it")
+        """Set an attribute of your own in the worlds of `indices`; AttributeError for what environments have."""
+        for world in self._worlds(indices):
+            setattr(world, attr_name, value)
 
     def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
-        """Call a method of the environment once, and give its result once per index."""
-        result = getattr(self._envs, method_name)(*args, **kwargs)
-        return [result for _ in self._get_indices(indices)]
+        """Call a method of the worlds of `indices`, and of no others; see `OneWorld`."""
+        results = [getattr(world, method_name)(*args, **kwargs) for world in self._worlds(indices)]
+        if method_name == "reset":
+            for w in self._get_indices(indices):
+                self._lengths[w], self._returns[w] = 0, 0.0
+        return results
+
+    def _worlds(self, indices: VecEnvIndices) -> list[OneWorld]:
+        return [self._envs.worlds[w] for w in self._get_indices(indices)]
 
     def env_is_wrapped(
         self, wrapper_class: type[gym.Wrapper[Any, Any, Any, Any]], indices: VecEnvIndices = None
@@ -125,7 +131,3 @@ class BounceVecEnv(VecEnv):
         if any(options.keys() != names for options in self._options):
             raise ValueError("options: must have the same names in every world")
         return {name: [options[name] for options in self._options] for name in names}
-
-
-def _plain(value: Any) -> Any:
-    return value.item() if isinstance(value, np.generic) else value

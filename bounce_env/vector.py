@@ -1,8 +1,8 @@
 """The vector environments: many worlds of one game in one batch, without a Python object per world."""
 
-from collections.abc import Sequence
-from dataclasses import fields
-from typing import Any, ClassVar, Literal
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Any, ClassVar
 
 import gymnasium as gym
 import numpy as np
@@ -12,21 +12,24 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from bounce_env.cards import PaddleEnv, PinballEnv, WallsEnv
-from bounce_env.env import action_space, taken_snapshot, world_seed
+from bounce_env.env import action_space, checked_render_mode, checked_seed, taken_snapshot, world_seed
 from bounce_env.frames import Frames
 from bounce_env.games import episode
 from bounce_env.games.batch import Batch
 from bounce_env.games.clone import States
-from bounce_env.games.game import Game
-from bounce_env.games.options import Options, PaddleOptions, PinballOptions, WallsOptions
-from bounce_env.games.paddle import PaddleGame
-from bounce_env.games.pinball import PinballGame
-from bounce_env.games.start import start_rows
-from bounce_env.games.walls import WallsGame
+from bounce_env.games.pace import NO_STEP_LIMIT
+from bounce_env.games.start import checked_options, start_rows
+from bounce_env.keywords import HasKeywords
+from bounce_env.one_world import OneWorld
 from bounce_env.render import Picture
+from bounce_env.scene import Scene
+from bounce_env.wording import shown, whole
 
 Observations = npt.NDArray[np.float32] | npt.NDArray[np.uint8]
 Flags = npt.NDArray[np.bool_]
+
+MOST_WORLDS = 10_000_000
+MOST_THREADS = 1024
 
 _AUTORESET = {
     AutoresetMode.NEXT_STEP: episode.NEXT_STEP,
@@ -35,7 +38,7 @@ _AUTORESET = {
 }
 
 
-class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
+class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]]):
     """A game as a Gymnasium vector environment.
 
     World i of a reset with `seed` plays, to the bit, what the single env plays after `reset(seed=seed + i)`.
@@ -46,60 +49,41 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         "render_fps": 30,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
+    own_keywords: ClassVar[Mapping[str, Any]] = {
+        "num_envs": 1,
+        "max_episode_steps": None,
+        "num_threads": 1,
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+        "copy": True,
+        "render_mode": None,
+    }
 
-    game_type: ClassVar[type[Game]]
-    options_type: ClassVar[type[Options]]
-
-    def __init__(
-        self,
-        num_envs: int = 1,
-        *,
-        max_episode_steps: int | None = None,
-        num_threads: int = 1,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        copy: bool = True,
-        obs: Literal["state", "pixels"] = "state",
-        render_mode: str | None = None,
-        width: int | None = None,
-        height: int | None = None,
-        trail: float = 0.0,
-        show_bounces: bool = False,
-        **options: Any,
-    ) -> None:
-        for name, value in (("num_envs", num_envs), ("num_threads", num_threads)):
-            if not _whole(value):
-                raise ValueError(f"{name} = {value!r}: must be a whole number >= 1")
-        if not isinstance(copy, bool):
-            raise ValueError(f"copy = {copy!r}: must be True or False")
-        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-            raise ValueError(f"render_mode = {render_mode!r}: must be one of {[None, *self.metadata['render_modes']]}")
-        # -1 is `gym.make`'s word for no limit.
-        steps = None if max_episode_steps == -1 else max_episode_steps
-        if steps is not None and not _whole(steps):
-            raise ValueError(f"max_episode_steps = {steps!r}: must be None, -1 or a whole number >= 1")
-        unknown = sorted(set(options) - {field.name for field in fields(self.options_type)})
-        if unknown:
-            raise TypeError(f"{type(self).__name__} got unexpected keyword arguments: {', '.join(unknown)}")
-        game = self.game_type(self.options_type(**options)).with_step_limit(steps)
-        mode = _autoreset_mode(autoreset_mode)
+    def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
+        # What is quick to refuse first.
+        own = {**self.own_keywords, **keywords}
+        self.num_envs = whole("num_envs", num_envs, 1, MOST_WORLDS)
+        num_threads = whole("num_threads", own["num_threads"], 1, MOST_THREADS)
+        mode = _autoreset_mode(own["autoreset_mode"])
+        if not isinstance(own["copy"], bool):
+            raise ValueError(f"copy = {shown(own['copy'])}: must be True or False")
+        self.render_mode = checked_render_mode(own["render_mode"], self.metadata["render_modes"])
+        steps = _steps(own["max_episode_steps"])
+        game, view, _ = self.sorted_out(keywords)
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds), "autoreset_mode": mode}
-        self.num_envs = int(num_envs)
-        self.render_mode = render_mode
         # A frame of an episode's end is drawn before the world is reset: not by the kernel then, but after that.
-        self._resets_late = obs == "pixels" and mode == AutoresetMode.SAME_STEP
+        self._resets_late = view.obs == "pixels" and mode == AutoresetMode.SAME_STEP
         autoreset = episode.DISABLED if self._resets_late else _AUTORESET[mode]
-        self._batch = Batch(game, self.num_envs, autoreset=autoreset, num_threads=int(num_threads))
-        self._frames = Frames(self._batch, obs=obs, width=width, height=height, trail=trail, show_bounces=show_bounces)
+        self._batch = Batch(game, self.num_envs, autoreset=autoreset, num_threads=num_threads)
+        self._batch.limit_steps(steps)
+        self._frames = Frames(self._batch, view)
         self.single_observation_space = self._frames.space
         self.single_action_space = action_space(game)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._mode = mode
-        self._copy = copy
+        self._copy: bool = own["copy"]
         self._seeded = np.zeros(self.num_envs, np.bool_)
         self._begun = False
-        self._every = np.ones(self.num_envs, np.bool_)
-        self._every.flags.writeable = False
         self._ended = np.ones(self.num_envs, np.bool_)
 
     def reset(
@@ -113,7 +97,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         seed: an int (world i gets seed + i) or one per world. Other options as for the single env, one for all or one
         row per world. Raises ValueError, and changes nothing, for what is not allowed.
         """
-        options = dict(options or {})
+        options = checked_options(options)
         mask = self._mask_of("options['reset_mask']", options.pop("reset_mask", None))
         snapshot, options = taken_snapshot(seed, options)
         if snapshot is not None:
@@ -122,7 +106,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         self._seed_worlds(seed, mask)
         self._batch.reset(mask, start)
         self._frames.update(np.flatnonzero(mask).tolist())
-        self._ended[mask] = False
+        self._ended &= ~mask
         return self._observations(), self._info(mask)
 
     def step(self, actions: Any) -> tuple[Observations, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
@@ -134,7 +118,7 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             )
         if not self._begun:
             raise gym.error.ResetNeeded("call reset() before step()")
-        ended = self._batch.step(np.asarray(actions))
+        ended = self._batch.step(actions)
         r = self._batch.results
         rewards, terminated, truncated = r.rewards.copy(), r.terminated.copy(), r.truncated.copy()
         over = terminated | truncated
@@ -143,11 +127,11 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         if ended and self._resets_late:
             self._batch.reset(over)
             self._frames.update(np.flatnonzero(over).tolist())
-        info = self._info(self._every)
+        info = self._info(np.ones(self.num_envs, np.bool_))
         if ended:
             self._tell_ends(info, over, finals)
         if self._mode == AutoresetMode.DISABLED:
-            self._ended = over
+            self._ended = over.copy()  # the caller is handed the other one
         return self._observations(), rewards, terminated, truncated, info
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
@@ -159,8 +143,50 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             raise gym.error.ResetNeeded("call reset() before render()")
         return tuple(self._frames.frame(w) for w in range(self.num_envs))
 
+    def render_world(self, world: int) -> npt.NDArray[np.uint8] | None:
+        """The frame of one world in mode rgb_array, None without a render mode."""
+        if self.render_mode is None:
+            return None
+        if not self._seeded[world]:
+            raise gym.error.ResetNeeded("call reset() before render()")
+        return self._frames.frame(world)
+
+    def scene_of(self, world: int) -> Scene:
+        """The scene of the present episode of a world."""
+        return self._batch.scene(world)
+
+    @property
+    def autoreset_mode(self) -> AutoresetMode:
+        """When a world whose episode has ended is reset."""
+        return self._mode
+
+    @cached_property
+    def worlds(self) -> tuple[OneWorld, ...]:
+        """Each world by itself, with the face of a single environment."""
+        return tuple(OneWorld(self, w) for w in range(self.num_envs))
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """Call a method of every world, see `OneWorld`, or get an attribute; returns one result per world."""
+        return tuple(called(world, name, *args, **kwargs) for world in self.worlds)
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """An attribute of every world, see `OneWorld`."""
+        return self.call(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Set an attribute of your own in every world: a list or tuple with one value per world, or one for all.
+
+        Raises ValueError for another number of values, AttributeError for what environments have themselves.
+        """
+        each = values if isinstance(values, list | tuple) else [values] * self.num_envs
+        if len(each) != self.num_envs:
+            raise ValueError(f"values = {shown(values)}: must be {self.num_envs}, one per world, or one for all")
+        for world, value in zip(self.worlds, each, strict=True):
+            setattr(world, name, value)
+
     def picture(self, world: int) -> Picture:
-        """What a frame of a world shows now. Raises ResetNeeded before its first reset."""
+        """What a frame of a world shows now. Raises ResetNeeded before its first reset, ValueError for no world."""
+        world = whole("world", world, 0, self.num_envs - 1)
         if not self._seeded[world]:
             raise gym.error.ResetNeeded("call reset() before picture()")
         return self._frames.picture(world)
@@ -195,23 +221,24 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
         if mask is None:
             return np.ones(self.num_envs, np.bool_)
         if not (isinstance(mask, np.ndarray) and mask.dtype == np.bool_ and mask.shape == (self.num_envs,)):
-            raise ValueError(f"{name} = {mask!r}: must be a bool array of shape ({self.num_envs},)")
+            raise ValueError(f"{name} = {shown(mask)}: must be a bool array of shape ({self.num_envs},)")
         if not mask.any():
             raise ValueError(f"{name}: must be True for at least one world")
         return mask.copy()  # it is handed out in info
 
     def _seed_worlds(self, seed: int | Sequence[int | None] | None, mask: Flags) -> None:
         """Seed the worlds of `mask` as the single env would: by their own seed, or once at random."""
-        if isinstance(seed, int | np.integer):
-            self._np_random, self._np_random_seed = seeding.np_random(int(seed))
-            seed = [int(seed) + i for i in range(self.num_envs)]
-        if seed is None:
-            seed = [None] * self.num_envs
-        if len(seed) != self.num_envs:
-            raise ValueError(f"seed: must be one number, or {self.num_envs}, one per world; got {len(seed)}")
-        # All generators first: a seed that is not allowed raises before any world has changed.
-        generators = {w: seeding.np_random(seed[w])[0] for w in np.flatnonzero(mask).tolist() if seed[w] is not None}
-        generators |= {w: self.np_random for w in np.flatnonzero(mask & ~self._seeded).tolist() if seed[w] is None}
+        if isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str | bytes):
+            seeds = [checked_seed(f"seed[{w}]", each) for w, each in enumerate(seed)]
+        else:
+            first = checked_seed("seed", seed)
+            if first is not None:
+                self._np_random, self._np_random_seed = seeding.np_random(first)
+            seeds = [None if first is None else first + w for w in range(self.num_envs)]
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed: must be one number, or {self.num_envs}, one per world; got {len(seeds)}")
+        generators = {w: seeding.np_random(seeds[w])[0] for w in np.flatnonzero(mask).tolist() if seeds[w] is not None}
+        generators |= {w: self.np_random for w in np.flatnonzero(mask & ~self._seeded).tolist() if seeds[w] is None}
         for w, generator in generators.items():
             self._batch.seed(w, world_seed(generator))
         self._seeded |= mask
@@ -235,49 +262,59 @@ class BounceVectorEnv(VectorEnv[Observations, Any, npt.NDArray[Any]]):
             told["level"] = self._batch.levels
         info: dict[str, Any] = {}
         for key, values in told.items():
-            info[key], info[f"_{key}"] = np.where(mask, values, 0), mask
+            info[key], info[f"_{key}"] = np.where(mask, values, 0), mask.copy()
         return info
 
     def _tell_ends(self, info: dict[str, Any], ended: Flags, finals: npt.NDArray[Any] | None) -> None:
         """Add what is said at an episode's end, as Gymnasium's own vector envs do: arrays with masks."""
         told: dict[str, Any] = {}
         for key, values in self._batch.end_info().items():
-            told[key], told[f"_{key}"] = values, ended
+            told[key], told[f"_{key}"] = values, ended.copy()
         if finals is None:
             info.update(told)
             return
         r = self._batch.results
-        told |= {"score": r.ended["score"].copy(), "_score": ended}
-        told |= {"ball": r.ended["ball"].copy(), "_ball": ended}
-        if self._batch.game.has_levels:
-            told |= {"level": r.ended["level"].copy(), "_level": ended}
-        info.update(final_obs=finals, _final_obs=ended, final_info=told, _final_info=ended)
+        for key in ("score", "ball", "level")[: 2 + self._batch.game.has_levels]:
+            told |= {key: r.ended[key].copy(), f"_{key}": ended.copy()}
+        info.update(final_obs=finals, _final_obs=ended.copy(), final_info=told, _final_info=ended.copy())
 
 
-def _whole(value: Any) -> bool:
-    return isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= 1)
+def called(world: OneWorld, name: str, *args: Any, **kwargs: Any) -> Any:
+    """What a method of a world returns, or an attribute that is none."""
+    attribute = getattr(world, name)
+    return attribute(*args, **kwargs) if callable(attribute) else attribute
+
+
+def _steps(limit: Any) -> int | None:
+    # -1 is `gym.make`'s word for no limit.
+    if limit is None or (isinstance(limit, int) and limit == -1):
+        return None
+    try:
+        return whole("max_episode_steps", limit, 1, NO_STEP_LIMIT)
+    except ValueError as error:
+        raise ValueError(str(error).replace("must be a", "must be None, -1 or a")) from None
 
 
 def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:
     for known in AutoresetMode:
-        if mode in (known, known.name, known.value):
+        if isinstance(mode, AutoresetMode | str) and mode in (known, known.name, known.value):
             return known
-    raise ValueError(f"autoreset_mode = {mode!r}: must be one of {', '.join(m.name for m in AutoresetMode)}")
+    raise ValueError(f"autoreset_mode = {shown(mode)}: must be one of {', '.join(m.name for m in AutoresetMode)}")
 
 
 class PaddleVectorEnv(BounceVectorEnv):
     __doc__ = PaddleEnv.__doc__
-    game_type = PaddleGame
-    options_type = PaddleOptions
+    game_type = PaddleEnv.game_type
+    options_type = PaddleEnv.options_type
 
 
 class PinballVectorEnv(BounceVectorEnv):
     __doc__ = PinballEnv.__doc__
-    game_type = PinballGame
-    options_type = PinballOptions
+    game_type = PinballEnv.game_type
+    options_type = PinballEnv.options_type
 
 
 class WallsVectorEnv(BounceVectorEnv):
     __doc__ = WallsEnv.__doc__
-    game_type = WallsGame
-    options_type = WallsOptions
+    game_type = WallsEnv.game_type
+    options_type = WallsEnv.options_type

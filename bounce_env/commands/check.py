@@ -1,5 +1,6 @@
 """`scenes check`."""
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -50,16 +51,17 @@ def _is_wrong(source: str, run: Callable[..., Survey], balls: int, effort: str, 
     for finding in found:
         for line in _printed(finding, show):
             say(f"  {line}")
-    problems = sum(finding.problem for finding in found)
-    say(f"{source}: {counted(problems, 'problem') if problems else 'nothing wrong'}")
-    return problems > 0
+    kinds = Counter(finding.kind for finding in found)
+    counts = ", ".join(counted(kinds[kind], kind) for kind in ("problem", "warning") if kinds[kind])
+    say(f"{source}: {counts or 'nothing wrong'}")
+    return kinds["problem"] > 0
 
 
 def _printed(finding: Finding, show: int) -> list[str]:
     lines = finding.lines[:show] if show else finding.lines
     more = len(finding.lines) - len(lines)
     return [
-        f"{'problem' if finding.problem else 'note'}: {finding.title}",
+        f"{finding.kind}: {finding.title}",
         *(f"    {line}" for line in lines),
         *([f"    and {more} more: --show 0 prints all"] if more else []),
     ]

@@ -9,7 +9,8 @@ import numpy.typing as npt
 from bounce_env.engine.pack import direction, extent, sin_cos
 from bounce_env.engine.tolerances import START_OVERLAP
 from bounce_env.scene import Arc, Bumper, Element, Flipper, Paddle, Part, Scene, Wall
-from bounce_env.scene.checks import label
+from bounce_env.scene.errors import label
+from bounce_env.wording import at_least
 
 Point = tuple[float, float]
 Core = tuple[Point, Point]
@@ -32,7 +33,7 @@ def cleared(scene: Scene, cores: Mapping[int, Core], x: float, y: float, disable
         if overlap > allowed:
             raise ValueError(
                 f"ball at ({x!r}, {y!r}) overlaps {describe(element, index)} by {overlap:.6g} m: "
-                f"its centre must be at least {radius + scene.ball.radius:.6g} m away"
+                f"its centre must be at least {at_least(radius + scene.ball.radius, 6)} m away"
             )
         if overlap > 0.0 and distance > 0.0:
             x, y = x + dx / distance * overlap, y + dy / distance * overlap
@@ -61,7 +62,7 @@ def apart(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
             if overlap > START_OVERLAP * extent(scene):
                 raise ValueError(
                     f"ball {k} at {tuple(positions[k].tolist())} overlaps ball {j} by {overlap:.6g} m: "
-                    f"their centres must be at least {2.0 * radius:.6g} m apart"
+                    f"their centres must be at least {at_least(2.0 * radius, 6)} m apart"
                 )
             if overlap > 0.0:
                 positions[k] += np.array((dx, dy)) * (overlap / distance)

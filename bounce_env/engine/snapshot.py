@@ -11,6 +11,7 @@ import numpy as np
 
 from bounce_env.engine.layout import Array, State
 from bounce_env.scene import Scene
+from bounce_env.wording import shown
 
 VERSION = 2
 
@@ -31,7 +32,7 @@ def from_bytes(data: bytes, scene: Scene, state: State) -> None:
     arrays = _arrays(state)
     size = _HEAD.size + sum(array.nbytes for array in arrays) + _CHECKSUM
     if not isinstance(data, bytes | bytearray | memoryview):
-        raise ValueError(f"snapshot = {data!r}: must be bytes")
+        raise ValueError(f"snapshot = {shown(data)}: must be bytes")
     data = bytes(data)
     if len(data) < _HEAD.size or not data.startswith(_MAGIC):
         raise ValueError(f"snapshot of {len(data)} bytes: is not one of a bounce_env World")

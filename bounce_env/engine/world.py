@@ -1,6 +1,5 @@
 """World: the engine's Python face, one world at a time."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -26,10 +25,13 @@ from bounce_env.engine.parts import offset_at
 from bounce_env.engine.snapshot import from_bytes, to_bytes
 from bounce_env.engine.view import view
 from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor, Wall
+from bounce_env.scene.fields import LARGEST
+from bounce_env.wording import numbers, real, shown, unknown_name, whole
 
 Floats = npt.NDArray[np.float64]
 
 MAX_EVENTS = 1_000_000
+MOST_EVENTS = 2**62
 MAX_BALLS = 64
 _LEDGER_ROWS = 1024
 
@@ -48,11 +50,9 @@ class World:
 
     def __init__(self, scene: Scene, balls: int = 1) -> None:
         if not isinstance(scene, Scene):
-            raise TypeError(f"scene: must be a Scene, not {scene!r}; load_scene reads one from a file")
-        if isinstance(balls, bool) or not isinstance(balls, int | np.integer) or not 1 <= balls <= MAX_BALLS:
-            raise ValueError(f"balls = {balls!r}: must be a whole number from 1 to {MAX_BALLS}")
+            raise TypeError(f"scene = {shown(scene)}: must be a Scene; load_scene reads one from a file")
         self.scene = scene
-        self._balls = int(balls)
+        self._balls = whole("balls", balls, 1, MAX_BALLS)
         self._tables, self._state = _new(scene, self._balls)
         self._parts = scene.parts
         self._started = False
@@ -60,11 +60,11 @@ class World:
     def reset(self, *, position: npt.ArrayLike, velocity: npt.ArrayLike) -> None:
         """Time 0, parts where they start, the balls at `position` [m] with `velocity` [m/s].
 
-        Both are of shape (balls, 2), or (x, y) for one ball. A paddle starts in the middle of its rail, a flipper at
-        its `rest_angle`, a moving bumper at its `center`, a draggable wall where it is in the scene. A ball that
-        overlaps an element by no more than round-off is moved to its surface. Raises ValueError for another shape, for
-        NaN or infinity, and where a ball overlaps an element (which it names) or another ball; the world is then as
-        before.
+        Both are of shape (balls, 2), or (x, y) for one ball, no number beyond 1e9 either way. A paddle starts in the
+        middle of its rail, a flipper at its `rest_angle`, a moving bumper at its `center`, a draggable wall where it is
+        in the scene. A ball that overlaps an element by no more than round-off is moved to its surface. Raises
+        ValueError for another shape, for NaN, infinity and what is no number, and where a ball overlaps an element
+        (which it names) or another ball; the world is then as before.
         """
         at, speed = self._rows("position", position), self._rows("velocity", velocity)
         cores = cores_at_start(self.scene)
@@ -76,8 +76,8 @@ class World:
         self._started = True
 
     def advance(self, seconds: float, *, ledger: bool = False, max_events: int = MAX_EVENTS) -> npt.NDArray[Any] | None:
-        """Let `seconds` >= 0 pass, or up to `max_events` >= 1 events (then `status` is BUDGET, `time` is that of the
-        last event, and the next call goes on from there). Sensor crossings and stops of parts are events, too.
+        """Let `seconds` pass, 0 to 1e9, or up to `max_events` >= 1 events (then `status` is BUDGET, `time` is that of
+        the last event, and the next call goes on from there). Sensor crossings and stops of parts are events, too.
 
         All that happens to a ball at one instant is one event of the budget.
 
@@ -85,12 +85,12 @@ class World:
         event in order of time; design.md, "Ledger". Raises ValueError for arguments that are not allowed.
         """
         self._check_started()
-        if not (math.isfinite(seconds) and seconds >= 0.0):
-            raise ValueError(f"seconds = {seconds!r}: must be finite and >= 0")
-        if max_events < 1:
-            raise ValueError(f"max_events = {max_events!r}: must be >= 1")
+        seconds = real("seconds", seconds, 0.0, LARGEST)
+        max_events = whole("max_events", max_events, 1, MOST_EVENTS)
+        if not isinstance(ledger, bool | np.bool_):
+            raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
         world = self._state.worlds[0]
-        hi, lo = begin_call(self._state, float(seconds))
+        hi, lo = begin_call(self._state, seconds)
         if not ledger:
             advance_to(self._state, self._tables, hi, lo, max_events, None)
             return None
@@ -115,15 +115,15 @@ class World:
         """
         self._check_started()
         names = {part.name: m for m, (_, part) in enumerate(self._parts) if part.name}
-        if name not in names:
-            raise ValueError(f"command: {name!r} must be one of the scene's parts: {sorted(names)}")
+        if not isinstance(name, str) or name not in names:
+            raise ValueError(f"command {shown(name)}: {unknown_name(name, sorted(names))} (the scene's parts)")
         part = self._parts[names[name]][1]
         if isinstance(part, Wall):
             command_wall(self._state, self._tables, names[name], _velocities(name, value, self.scene.max_speed))
             return
         if isinstance(part, Flipper):
             if not isinstance(value, bool | np.bool_):
-                raise ValueError(f"command {name!r} = {value!r}: must be True (pressed) or False (released)")
+                raise ValueError(f"command {name!r} = {shown(value)}: must be True (pressed) or False (released)")
             velocity = part.up_speed if value else -part.down_speed
         else:
             fastest = part.max_speed if isinstance(part, Paddle) else part.speed
@@ -140,10 +140,10 @@ class World:
         bouncing = {
             e.name: i for i, e in enumerate(self.scene.elements) if e.name and not isinstance(e, Sensor | Field)
         }
-        if name not in bouncing:
-            raise ValueError(f"enable: {name!r} must be one of the scene's bouncing elements: {sorted(bouncing)}")
+        if not isinstance(name, str) or name not in bouncing:
+            raise ValueError(f"enable {shown(name)}: {unknown_name(name, sorted(bouncing))} (what bounces the ball)")
         if not isinstance(on, bool | np.bool_):
-            raise ValueError(f"enable {name!r} = {on!r}: must be True or False")
+            raise ValueError(f"enable {name!r} = {shown(on)}: must be True or False")
         disabled = self._state.disabled
         assert disabled is not None
         index = bouncing[name]
@@ -159,11 +159,14 @@ class World:
         resolve_all(self._state, self._tables)
 
     def push(self, change: npt.ArrayLike) -> None:
-        """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now. Raises ValueError for NaN and infinity."""
+        """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now.
+
+        Raises ValueError for NaN, infinity and more than 1e9 either way.
+        """
         self._check_started()
-        rows = np.array(change, np.float64)
-        if rows.shape != (2,) or not np.isfinite(rows).all():
-            raise ValueError(f"push = {change!r}: must be (dvx, dvy), finite")
+        rows = numbers(change)
+        if rows is None or rows.shape != (2,) or not (abs(rows) <= LARGEST).all():
+            raise ValueError(f"push = {shown(change)}: must be (dvx, dvy), each from {-LARGEST:g} to {LARGEST:g} m/s")
         push_balls(self._state, self._tables, float(rows[0]), float(rows[1]))
 
     def replace(self, scene: Scene) -> None:
@@ -177,7 +180,7 @@ class World:
         """
         self._check_started()
         if not isinstance(scene, Scene):
-            raise TypeError(f"scene: must be a Scene, not {scene!r}")
+            raise TypeError(f"scene = {shown(scene)}: must be a Scene")
         if scene.ball.radius != self.scene.ball.radius:
             raise ValueError(f"ball.radius = {scene.ball.radius!r}: must be {self.scene.ball.radius!r} as before")
         tables, state = _new(scene, self._balls)
@@ -286,11 +289,14 @@ class World:
         return balls, cores
 
     def _rows(self, name: str, value: npt.ArrayLike) -> Floats:
-        rows = np.array(value, np.float64, ndmin=2)
+        given = numbers(value)
+        rows = np.empty(0) if given is None else np.array(given, ndmin=2)
         if rows.shape != (self._balls, 2):
-            raise ValueError(f"{name} = {value!r}: must be (x, y) or one row of it for each of {self._balls} balls")
-        if not np.isfinite(rows).all():
-            raise ValueError(f"{name} = {value!r}: must be finite")
+            one = "a pair of numbers (x, y)"
+            allowed = one if self._balls == 1 else f"{one} for each of {self._balls} balls"
+            raise ValueError(f"{name} = {shown(value)}: must be {allowed}")
+        if not (abs(rows) <= LARGEST).all():  # also false for NaN
+            raise ValueError(f"{name} = {shown(value)}: must be finite, each from {-LARGEST:g} to {LARGEST:g}")
         return rows
 
     def _check_started(self) -> None:
@@ -310,19 +316,17 @@ def _cores_by_index(scene: Scene, cores: Floats) -> dict[int, Core]:
 
 def _velocities(name: str, value: object, max_speed: float | None) -> Floats:
     """The velocities of a draggable wall's two ends, (2, 2)."""
-    try:
-        rows = np.array(value, np.float64)
-    except (TypeError, ValueError):
-        rows = np.empty(0)
-    limit = math.inf if max_speed is None else max_speed
-    if rows.shape != (2, 2) or not np.isfinite(rows).all() or not (np.hypot(*rows.T) < limit).all():
-        words = "" if max_speed is None else f", each slower than the scene's max_speed, {max_speed!r} m/s"
-        raise ValueError(f"command {name!r} = {value!r}: must be ((vx, vy), (vx, vy)), finite{words}")
+    rows = numbers(value)
+    limit = LARGEST if max_speed is None else max_speed
+    if rows is None or rows.shape != (2, 2) or not (np.hypot(*rows.T) < limit).all():
+        words = f"each slower than {limit:g} m/s" if max_speed is None else f"each slower than max_speed, {limit!r} m/s"
+        raise ValueError(f"command {name!r} = {shown(value)}: must be ((vx, vy), (vx, vy)), {words}")
     return rows
 
 
 def _speed(name: str, value: Any, fastest: float) -> float:
-    is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    if not (is_number and math.isfinite(value) and abs(value) <= fastest):
-        raise ValueError(f"command {name!r} = {value!r}: must be finite and at most {fastest!r} m/s either way")
-    return float(value)
+    try:
+        return real(name, value, -fastest, fastest)
+    except ValueError:
+        allowed = f"a number from {-fastest!r} to {fastest!r} m/s"
+        raise ValueError(f"command {name!r} = {shown(value)}: must be {allowed}") from None

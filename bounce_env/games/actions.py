@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.jit import function
+from bounce_env.wording import shown
 
 Controls: TypeAlias = npt.NDArray[np.float64]
 """(worlds, k): what a game's kernel reads."""
@@ -37,7 +38,7 @@ class Continuous:
             what = f"{worlds * self.size} numbers, {each} per world"
             raise ValueError(f"actions of shape {actions.shape}: must be {what}")
         if actions.dtype.kind not in "fiu":
-            raise ValueError(f"actions = {actions!r}: must be numbers")
+            raise ValueError(f"actions = {shown(actions)}: must be numbers")
         return actions.reshape(worlds, self.size).astype(np.float64, copy=False)
 
 
@@ -55,10 +56,10 @@ class Discrete:
         if actions.shape != (worlds,) and not (worlds == 1 and actions.shape == ()):
             raise ValueError(f"actions of shape {actions.shape}: must be {worlds} {what}, one per world")
         if actions.dtype.kind not in "iu":
-            raise ValueError(f"actions = {actions!r}: must be {what}")
+            raise ValueError(f"actions = {shown(actions)}: must be {what}")
         numbers = actions.reshape(worlds).astype(np.int64)
         if (numbers < 0).any() or (numbers >= len(self.codes)).any():
-            raise ValueError(f"actions = {actions!r}: each must be a whole number from 0 to {len(self.codes) - 1}")
+            raise ValueError(f"actions = {shown(actions)}: each must be a whole number from 0 to {len(self.codes) - 1}")
         return np.array(self.codes)[numbers][:, None]
 
 
@@ -77,7 +78,7 @@ class Buttons:
                 f"actions of shape {actions.shape}: must be ({worlds}, {self.count}), 0 or 1 for each button"
             )
         if actions.dtype.kind not in "iub" or not np.isin(actions, (0, 1)).all():
-            raise ValueError(f"actions = {actions!r}: each must be 0 or 1")
+            raise ValueError(f"actions = {shown(actions)}: each must be 0 or 1")
         bits = actions.reshape(worlds, self.count).astype(np.float64) * 2.0 ** np.arange(self.count)
         return bits.sum(axis=1, keepdims=True)
 

@@ -1,6 +1,7 @@
 """A batch of worlds that play one game: the one thing that the single env, the vector env and SB3's share."""
 
 import hashlib
+import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cached_property, partial
@@ -15,7 +16,9 @@ from bounce_env.games.clone import States, clone_rows, restore_rows
 from bounce_env.games.episode import END_REASONS, EPISODE, Results, Worlds, bind, new_results
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
+from bounce_env.games.pace import NO_STEP_LIMIT
 from bounce_env.scene import Scene, Sensor
+from bounce_env.wording import shown
 
 Mask = npt.NDArray[np.bool_]
 
@@ -46,6 +49,7 @@ class Batch:
         self._start = np.full((worlds, 5), np.nan)
         self._borders = np.linspace(0, worlds, min(num_threads, worlds) + 1).astype(int).tolist()
         self._threads: ThreadPoolExecutor | None = None
+        self._process = os.getpid()
         self._handle: Any = None
 
     def __getstate__(self) -> dict[str, Any]:
@@ -55,6 +59,13 @@ class Batch:
         """Where scenes are written at each beginning, world w has row w of the tables for itself."""
         if self._written:
             self.state.worlds["scene"] = np.arange(self.worlds)
+
+    def limit_steps(self, steps: int | None) -> None:
+        """Truncate episodes after so many steps, if nothing else ends them before; None: never."""
+        steps = NO_STEP_LIMIT if steps is None else steps
+        if steps != self.rules.pace.steps:
+            self.rules = self.rules._replace(pace=self.rules.pace._replace(steps=steps))
+            self._handle = None
 
     def seed(self, world: int, seed: np.uint64) -> None:
         """Let the stream of episodes of a world begin anew from `seed`."""
@@ -76,25 +87,29 @@ class Batch:
             self._handle = bind(self.rules, worlds)
         return self._handle
 
-    def step(self, actions: Array) -> int:
+    def step(self, actions: npt.ArrayLike) -> int:
         """One step of every world; returns how many episodes ended.
 
         actions: as `game.actions` says. Raises ValueError, before anything moves, for another shape or type, NaN,
         infinity, or no such action.
         """
-        controls = self.game.actions.controls(np.asarray(actions), self.worlds)
+        controls = self.game.actions.controls(_as_array(actions), self.worlds)
         if len(self._borders) == 2:
             ended = step_worlds(self._bound(), controls, self.autoreset, 0, self.worlds)
         else:
-            if self._threads is None:
-                self._threads = ThreadPoolExecutor(len(self._borders) - 1)
             step = partial(step_worlds, self._bound(), controls, self.autoreset)
-            ended = sum(self._threads.map(step, self._borders[:-1], self._borders[1:]))
+            ended = sum(self._pool().map(step, self._borders[:-1], self._borders[1:]))
         if ended < 0:
             world, j = np.argwhere(~np.isfinite(controls))[0].tolist()
             place = f"{world}, {j}" if controls.shape[1] > 1 else f"{world}"
             raise ValueError(f"actions[{place}] = {controls[world, j]}: must be finite")
         return ended
+
+    def _pool(self) -> ThreadPoolExecutor:
+        """The threads of this process: a forked child has a copy of its parent's pool, but none of its threads."""
+        if self._threads is None or self._process != os.getpid():
+            self._threads, self._process = ThreadPoolExecutor(len(self._borders) - 1), os.getpid()
+        return self._threads
 
     def clone(self, mask: Mask) -> States:
         """The states of the worlds of `mask`, with their streams of episodes and what the last step returned."""
@@ -115,7 +130,7 @@ class Batch:
     def _digest(self) -> str:
         """Of all that a state belongs to: who looks ahead clones and restores before every step."""
         game = self.game
-        text = repr((type(game).__name__, game.scenes, game.options, game.rules.pace.limit))
+        text = repr((type(game).__name__, game.scenes, replace(game.options, scene=None)))
         return hashlib.sha256(text.encode()).hexdigest()
 
     def end_info(self) -> dict[str, Array]:
@@ -170,6 +185,13 @@ class Batch:
 
     def close(self) -> None:
         """End the threads."""
-        if self._threads is not None:
+        if self._threads is not None and self._process == os.getpid():
             self._threads.shutdown()
-            self._threads = None
+        self._threads = None
+
+
+def _as_array(actions: Any) -> Array:
+    try:
+        return np.asarray(actions)
+    except ValueError:  # NumPy's, of rows that differ in length
+        raise ValueError(f"actions = {shown(actions)}: must be an array, with rows of one length") from None

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.layout import Array
+from bounce_env.wording import shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,10 +34,12 @@ def clone_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_]
 def restore_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_], states: States) -> None:
     """Write states into the rows of `mask`; raises ValueError, before anything is written, where they do not fit."""
     if not isinstance(states, States):
-        raise ValueError(f"state = {states!r}: must be what clone_state() returned")
+        raise ValueError(f"state = {shown(states)}: must be what clone_state() returned")
     if states.game != game:
         raise ValueError("state of another game, scene or options: must be restored into an equal environment")
     if len(states) != mask.sum():
         raise ValueError(f"state of {len(states)} worlds: must be of {mask.sum()}")
+    if [(a.dtype, a.shape[1:]) for a in arrays] != [(rows.dtype, rows.shape[1:]) for rows in states.arrays]:
+        raise ValueError("state: has other arrays than clone_state() returned")
     for array, rows in zip(arrays, states.arrays, strict=True):
         array[mask] = rows

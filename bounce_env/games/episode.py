@@ -18,6 +18,7 @@ EPISODE = record(
     world_seed="u8", episodes="i8",  # the world's stream of episodes and how many it has begun
     seed="u8",  # of the present episode
     frames="i8",  # 1 / fps each, since the episode began
+    steps="i8",  # of the agent, since the episode began
     score="f8",
     ball="i8",  # which one is played, from 0 on
     level="i8",  # which one it is played on; NO_LEVEL in a game without
@@ -140,7 +141,8 @@ def begin_episode(worlds: Worlds, w: int) -> Record:
     episode = worlds.episodes[w]
     episode.seed = bits(episode.world_seed, EPISODES, episode.episodes)
     episode.episodes += 1
-    episode.frames, episode.ball, episode.level, episode.end, episode.score = 0, 0, NO_LEVEL, RUNNING, 0.0
+    episode.frames, episode.steps, episode.score = 0, 0, 0.0
+    episode.ball, episode.level, episode.end = 0, NO_LEVEL, RUNNING
     for j in range(worlds.held.shape[1]):
         worlds.held[w, j] = 0.0
     for j in range(worlds.counters.shape[1]):

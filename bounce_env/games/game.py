@@ -1,6 +1,7 @@
 """What every game is to a batch of worlds."""
 
-from typing import Any, ClassVar, Self
+import math
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +11,7 @@ from bounce_env.engine.pack import pack
 from bounce_env.games.actions import Actions
 from bounce_env.games.episode import FPS
 from bounce_env.games.options import Options
-from bounce_env.scene import Scene, load_scene
+from bounce_env.scene import Scene, as_scene
 
 
 class Game:
@@ -37,8 +38,7 @@ class Game:
 
     def __init__(self, options: Options) -> None:
         self.options = options
-        scene = self.default_scene if options.scene is None else options.scene
-        self.scenes: tuple[Scene, ...] = (scene if isinstance(scene, Scene) else load_scene(scene),)
+        self.scenes: tuple[Scene, ...] = (as_scene(self.default_scene if options.scene is None else options.scene),)
         self.tables: Tables = pack(self.scenes)
         self.step_seconds = options.frame_skip / FPS
 
@@ -63,13 +63,11 @@ class Game:
         """Which elements are lit in a world of which the rules remember this; None: the game has no lamps."""
         return None
 
-    def with_step_limit(self, steps: int | None) -> Self:
-        """The same game, truncated after `steps` steps if that comes before the time limit."""
-        if steps is not None:
-            pace = self.rules.pace
-            limit = min(pace.limit, float(steps * pace.frame_skip))
-            self.rules = self.rules._replace(pace=pace._replace(limit=limit))
-        return self
+    @property
+    def most_steps(self) -> int | None:
+        """How many steps an episode has at most; None where there is no time limit."""
+        pace = self.rules.pace
+        return None if math.isinf(pace.limit) else math.ceil(pace.limit / pace.frame_skip)
 
 
 def repeated(tables: Tables, worlds: int) -> Tables:

@@ -36,6 +36,7 @@ from bounce_env.games.levels import (
     observe_bumpers,
 )
 from bounce_env.games.options import PaddleOptions
+from bounce_env.games.pace import out_of_time
 from bounce_env.games.paddle_rules import (
     BUMPER_POINTS,
     LAUNCH_ANGLE,
@@ -146,6 +147,7 @@ def _play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     frames = 1 if rules.pace.repeat > 0.0 else rules.pace.frame_skip
     code = DONE
     last = episode.frames + rules.pace.frame_skip
+    episode.steps += 1
     while episode.frames < last:
         hold_action(worlds, actions, w, rules.pace.repeat)
         move(state, tables, state.motions, tables.parts, part, w, clipped(worlds.held[w, 0]))
@@ -159,7 +161,7 @@ def _play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
         episode.end = DRAINED
     elif code != DONE:
         episode.end = OUT_OF_BUDGET
-    elif episode.frames >= rules.pace.limit:
+    elif out_of_time(episode, rules.pace):
         episode.end = TIME_LIMIT
     episode.score += points
     return points
@@ -179,7 +181,7 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     state, tables, results = worlds.state, worlds.tables, worlds.results
     episode, world = worlds.episodes[w], state.worlds[w]
     frames = episode.frames + rules.pace.frame_skip
-    if episode.end != RUNNING or frames >= rules.pace.limit:
+    if episode.end != RUNNING or frames >= rules.pace.limit or episode.steps + 1 >= rules.pace.steps:
         return False
     until = frames / rules.pace.fps
     action = clipped(actions[w, 0])
@@ -192,6 +194,7 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     if episode.frames == 0:
         open_books(results, w)
     worlds.held[w, 0], episode.frames = action, frames
+    episode.steps += 1
     world.time_hi, world.time_lo = until, 0.0
     observe(rules, worlds, w, results.observations)
     return True

@@ -26,7 +26,7 @@ from bounce_env.games.episode import (
 from bounce_env.games.field import speed_bound
 from bounce_env.games.game import Game
 from bounce_env.games.options import PinballOptions
-from bounce_env.games.pace import pace_of
+from bounce_env.games.pace import out_of_time, pace_of
 from bounce_env.games.pinball_points import count_points
 from bounce_env.games.pinball_rules import (
     DUE,
@@ -185,6 +185,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     state, tables, episode, memory = worlds.state, worlds.tables, worlds.episodes[w], worlds.memory[w]
     reward = 0.0
     frames = rules.pace.frame_skip
+    episode.steps += 1
     clear_hits(state, w)
     while (frames > 0 or memory.serving) and episode.end == RUNNING:
         buttons = 0
@@ -213,6 +214,8 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
                 mind_time(rules, worlds, w)
         if episode.end == RUNNING and episode.frames >= rules.pace.limit:
             episode.end = TIME_LIMIT
+    if episode.end == RUNNING and out_of_time(episode, rules.pace):
+        episode.end = TIME_LIMIT
     return reward
 
 
@@ -285,6 +288,8 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     frames = episode.frames + rules.pace.frame_skip
     if episode.end != RUNNING or frames >= rules.pace.limit or rules.pace.repeat > 0.0:
         return False
+    if episode.steps + 1 >= rules.pace.steps:
+        return False
     if actions[w, 0] != memory.pressed or memory.serving or memory.tilt > 0.0 or memory.tilted:
         return False
     if frames - memory.scored >= STUCK_FRAMES or not falls_from_high(rules, worlds, w):
@@ -303,6 +308,7 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     if worlds.results.ended[w].end != RUNNING:
         open_books(worlds.results, w)
     worlds.held[w, 0], episode.frames = actions[w, 0], frames
+    episode.steps += 1
     observe(rules, worlds, w, worlds.results.observations)
     return True
 

@@ -23,6 +23,7 @@ from bounce_env.games.episode import (
 from bounce_env.games.field import place_seen, speed_bound
 from bounce_env.games.game import Game, repeated
 from bounce_env.games.options import WallsOptions
+from bounce_env.games.pace import out_of_time
 from bounce_env.games.rules import is_game
 from bounce_env.games.walls_rules import (
     BALL_FRAMES,
@@ -101,6 +102,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     frames = 1 if rules.pace.repeat > 0.0 else rules.pace.frame_skip
     code = DONE
     last = episode.frames + rules.pace.frame_skip
+    episode.steps += 1
     while episode.frames < last and code == DONE and state.balls[w, 0].status != layout.CRUSHED:
         hold_action(worlds, actions, w, rules.pace.repeat)
         drag(rules, worlds, state.ends, worlds.tables.guides, w, frames / rules.pace.fps)
@@ -109,7 +111,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
         until = (episode.frames - worlds.memory[w].born) / rules.pace.fps
         code = advance(state, worlds.tables, w, until, rules.pace.max_events)
     points = mind_ball(rules, worlds, w, code)
-    if episode.end == RUNNING and episode.frames >= rules.pace.limit:
+    if episode.end == RUNNING and out_of_time(episode, rules.pace):
         episode.end = TIME_LIMIT
     episode.score += points
     if rules.shaping == 0.0:

@@ -13,6 +13,7 @@ from bounce_env.games.episode import FPS
 from bounce_env.games.options import WallsOptions
 from bounce_env.games.pace import Pace, pace_of
 from bounce_env.scene import Arc, Element, Scene, Sensor, Wall
+from bounce_env.wording import at_least, at_most
 
 # The launch: place as shares of the field, so that it fits the scenes of users, too.
 LAUNCH_X = (0.2, 0.8)
@@ -138,12 +139,13 @@ def problems_of(scene: Scene) -> Iterator[str]:
 def _problems_of_wall(scene: Scene, wall: Wall) -> Iterator[str]:
     speed = math.sqrt(2.0) * 2.0 * WALL_SPEED
     if scene.max_speed is not None and scene.max_speed < speed:
-        yield f"max_speed = {scene.max_speed!r}: must be at least {speed:g}, faster than the ends of the wall"
+        yield f"max_speed = {scene.max_speed!r}: must be at least {at_least(speed)}, faster than the ends of the wall"
     if wall.reach is None:
         yield "reach = None: the draggable wall must have one"
     length = math.dist(wall.start, wall.end)
     if length > longest(wall):
-        yield f"min_length = {wall.min_length!r}: must be at least {length / LONGEST:g}, a quarter of the wall's length"
+        least = at_least(length / LONGEST)
+        yield f"min_length = {wall.min_length!r}: must be at least {least}, a quarter of the wall's length"
 
 
 def _problems_of_field(scene: Scene) -> Iterator[str]:
@@ -158,7 +160,7 @@ def _problems_of_field(scene: Scene) -> Iterator[str]:
         assert isinstance(wall, Wall)
         (x0, y0), (x1, y1) = wall.reach or ((x, y), (x, y))
         if min(x0, x1) < x or max(x0, x1) > x + width or min(y0, y1) < y or max(y0, y1) > y + height:
-            where = f"x {x:g} to {x + width:g} and y {y:g} to {y + height:g}"
+            where = f"x {at_least(x, 6)} to {at_most(x + width, 6)} and y {at_least(y, 6)} to {at_most(y + height, 6)}"
             yield f"reach = {wall.reach!r}: must be on the field, {where}"
     yield from sorted(set(_in_the_way(scene)))
 

@@ -2,7 +2,8 @@
 
 from bounce_env.scene.base import Box
 from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Flipper, Paddle, Part, Wall, moves
-from bounce_env.scene.load import SceneError, builtin_scenes, dump_scene, load_scene, scene_from_dict
+from bounce_env.scene.errors import SceneError
+from bounce_env.scene.load import as_scene, builtin_scenes, dump_scene, load_scene, scene_from_dict, scene_to_dict
 from bounce_env.scene.regions import Field, Sensor
 from bounce_env.scene.spec import Scene
 
@@ -20,9 +21,11 @@ __all__ = [
     "SceneError",
     "Sensor",
     "Wall",
+    "as_scene",
     "builtin_scenes",
     "dump_scene",
     "load_scene",
     "moves",
     "scene_from_dict",
+    "scene_to_dict",
 ]

@@ -9,8 +9,10 @@ from pydantic_core import InitErrorDetails
 
 from bounce_env.scene.base import union
 from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Flipper, Paddle, Wall
+from bounce_env.scene.errors import Location, label
 from bounce_env.scene.fields import not_allowed, required
 from bounce_env.scene.regions import Field, Sensor, flat_corner
+from bounce_env.wording import at_least, at_most
 
 SMALLEST_RADIUS = 1e-6
 """Smallest radius as a share of the scene's longer side. The time at which a disc is hit comes from squares
@@ -30,10 +32,8 @@ SMALLEST_AT_OFFSET = 1e-12
 """Smallest length of any kind as a share of the largest coordinate: some thousand times what float64 can
 tell apart there. Only scenes far away from the origin meet it."""
 
-
-def label(index: int, kind: str, name: object) -> str:
-    """How messages call an element: `elements[3] (wall 'floor')`, or `elements[3] (wall)` without a name."""
-    return f"elements[{index}] ({kind} {name!r})" if name else f"elements[{index}] ({kind})"
+SLACK = 0.999
+"""What a limit is multiplied by: a size of its round value passes, by which the scene itself may be longer."""
 
 
 def check_scene(ball: Ball | None, elements: Mapping[int, Element], max_speed: float | None) -> None:
@@ -78,8 +78,8 @@ def _limits(elements: Iterable[Element]) -> _Limits:
     largest = max(abs(x_min), abs(y_min), abs(x_max), abs(y_max))
     return _Limits(
         side=side,
-        radius=max(SMALLEST_RADIUS * side, SMALLEST_AT_OFFSET * largest),
-        length=max(SMALLEST_LENGTH * side, SMALLEST_AT_OFFSET * largest),
+        radius=SLACK * max(SMALLEST_RADIUS * side, SMALLEST_AT_OFFSET * largest),
+        length=SLACK * max(SMALLEST_LENGTH * side, SMALLEST_AT_OFFSET * largest),
         why=f"in a scene whose longer side is {side:.3g} m and whose largest coordinate is {largest:.3g} m",
     )
 
@@ -88,16 +88,10 @@ def _sizes(ball: Ball | None, elements: Mapping[int, Element]) -> Iterator[InitE
     limits = _limits(elements.values())
     ball_radius = 0.0 if ball is None else ball.radius
     if 0.0 < ball_radius < limits.radius:
-        yield _not_allowed(f"0 or at least {limits.radius:.3g} m, {limits.why}", ball_radius, "ball", "radius")
+        yield _not_allowed(f"0 or at least {at_least(limits.radius, 2)} m, {limits.why}", ball_radius, "ball", "radius")
     for index, element in elements.items():
         for field, words in _size_problems(element, ball_radius, limits):
-            value = _as_lists(getattr(element, field))
-            yield _not_allowed(f"{words}, {limits.why}", value, "elements", index, field)
-
-
-def _as_lists(value: object) -> object:
-    """A point or points as files spell them."""
-    return [*map(_as_lists, value)] if isinstance(value, tuple) else value
+            yield _not_allowed(f"{words}, {limits.why}", getattr(element, field), "elements", index, field)
 
 
 def _size_problems(element: Element, ball_radius: float, limits: _Limits) -> Iterator[tuple[str, str]]:
@@ -106,14 +100,14 @@ def _size_problems(element: Element, ball_radius: float, limits: _Limits) -> Ite
         case Wall():
             yield from _short(element, "start", "end", limits)
             if element.min_length is not None and element.min_length < limits.length:
-                yield "min_length", f"at least {limits.length:.3g} m"
+                yield "min_length", f"at least {at_least(limits.length, 2)} m"
         case Bumper():
             yield from _thin(element.radius, limits)
             yield from _short(element, "center", "rail_end", limits)
         case Flipper():
             yield from _thin(element.radius, limits)
             if element.length < limits.length:
-                yield "length", f"at least {limits.length:.3g} m"
+                yield "length", f"at least {at_least(limits.length, 2)} m"
         case Arc():
             yield from _thin(element.radius, limits)
             yield from _misshapen(element, ball_radius, limits)
@@ -121,7 +115,7 @@ def _size_problems(element: Element, ball_radius: float, limits: _Limits) -> Ite
             yield from _thin(element.radius, limits)
             yield from _short(element, "rail_start", "rail_end", limits)
             if 0.0 < element.half_width < limits.length:
-                yield "half_width", f"0 or at least {limits.length:.3g} m"
+                yield "half_width", f"0 or at least {at_least(limits.length, 2)} m"
         case Sensor():
             yield from _short(element, "start", "end", limits)
             yield from _thin(element.radius, limits)
@@ -132,7 +126,7 @@ def _size_problems(element: Element, ball_radius: float, limits: _Limits) -> Ite
 
 def _thin(radius: float | None, limits: _Limits) -> Iterator[tuple[str, str]]:
     if radius is not None and radius < limits.radius:
-        yield "radius", f"at least {limits.radius:.3g} m"
+        yield "radius", f"at least {at_least(limits.radius, 2)} m"
 
 
 def _short(
@@ -140,17 +134,17 @@ def _short(
 ) -> Iterator[tuple[str, str]]:
     start, end = getattr(element, first), getattr(element, last)
     if start is not None and end is not None and math.dist(start, end) < limits.length:
-        yield last, f"at least {limits.length:.3g} m away from {first} = {list(start)}"
+        yield last, f"at least {at_least(limits.length, 2)} m away from {first} = {list(start)}"
 
 
 def _misshapen(arc: Arc, ball_radius: float, limits: _Limits) -> Iterator[tuple[str, str]]:
     if arc.radius > LARGEST_ARC * limits.side:
-        yield "radius", f"at most {LARGEST_ARC * limits.side:.3g} m"
+        yield "radius", f"at most {at_most(LARGEST_ARC * limits.side)} m"
     # inside of the arc the ball's centre keeps to a circle of the difference
     if ball_radius > 0.0 and abs(arc.radius - ball_radius) < limits.radius:
-        yield "radius", f"at least {limits.radius:.3g} m more or less than ball.radius = {ball_radius}"
+        yield "radius", f"at least {at_least(limits.radius, 2)} m more or less than ball.radius = {ball_radius}"
     if arc.radius * (arc.end_angle - arc.start_angle) < limits.length:
-        yield "end_angle", f"such that the arc is at least {limits.length:.3g} m long"
+        yield "end_angle", f"such that the arc is at least {at_least(limits.length, 2)} m long"
 
 
 def _speeds(ball: Ball | None, elements: Mapping[int, Element], max_speed: float | None) -> Iterator[InitErrorDetails]:
@@ -159,8 +153,9 @@ def _speeds(ball: Ball | None, elements: Mapping[int, Element], max_speed: float
     if max_speed is None:
         gains = (_gain(ball, index, element) for index, element in elements.items())
         if gain := next(filter(None, gains), None):
-            words = f"a number > {fastest:g}, because {gain}, so that bounces may add speed without limit"
-            yield InitErrorDetails(type=required(words), loc=("max_speed",), input=None)
+            why, cause = gain
+            words = f"a number > {at_least(fastest)}, because {why}, so that bounces may add speed without limit"
+            yield InitErrorDetails(type=required(words, cause), loc=("max_speed",), input=None)
     elif max_speed <= fastest:
         words = f"greater than {fastest}, the fastest that the surface of {_label(index, elements[index])} moves"
         yield _not_allowed(words, max_speed, "max_speed")
@@ -178,14 +173,15 @@ def _part_speed(element: Element) -> float:
     return 0.0
 
 
-def _gain(ball: Ball | None, index: int, element: Element) -> str | None:
-    """What lets a bounce off the element add energy, in words, or None."""
+def _gain(ball: Ball | None, index: int, element: Element) -> tuple[str, Location] | None:
+    """What lets a bounce off the element add energy, in words and by its location, or None."""
     if isinstance(element, Sensor | Field):
         return None
     if element.kick > 0.0:
-        return f"{_label(index, element)} has kick = {element.kick}"
+        return f"{_label(index, element)} has kick = {element.kick}", ("elements", index, "kick")
     if ball is not None and ball.b * element.b > 1.0:
-        return f"{_label(index, element)} has b = {element.b}, times ball.b = {ball.b} is more than 1"
+        words = f"{_label(index, element)} has b = {element.b}, times ball.b = {ball.b} is more than 1"
+        return words, ("elements", index, "b") if element.b > 1.0 else ("ball", "b")
     return None
 
 

@@ -1,7 +1,7 @@
 """What a scene is made of: frozen, validated specs in SI units (metres, seconds, radians; y points up).
 
-Every spec checks its own fields when it is made; what is wrong raises `pydantic.ValidationError` (a
-ValueError) that names class, field, value and what is allowed. Numbers may be Python's or NumPy's, points a
+Every spec checks its own fields when it is made; what is wrong raises SceneError (a ValueError) that
+names class, field, value and what is allowed. Numbers may be Python's or NumPy's, points a
 tuple, list or array of two; they are kept as float and tuple[float, float]. Text and bools are not numbers.
 
 The law of a bounce is the tutorial's (chapter "Bounce", section "Real bounce and friction"): of the velocity
@@ -19,6 +19,7 @@ from pydantic.dataclasses import dataclass
 from pydantic_core import InitErrorDetails
 
 from bounce_env.scene.base import CONFIG, Box, Spec, away_from, box_of, union
+from bounce_env.scene.errors import own_words_of_scenes
 from bounce_env.scene.fields import (
     SMALLEST,
     Angle,
@@ -35,6 +36,7 @@ from bounce_env.scene.fields import (
     not_allowed,
 )
 from bounce_env.scene.regions import Field, Sensor
+from bounce_env.wording import at_most
 
 CLOSED = 1e-12
 """An arc is a closed circle when what it lacks of 2 pi is no more than this [rad]: round-off of the angles."""
@@ -44,6 +46,7 @@ SMALLEST_SPAN = 1e-6
 A narrower gap is a 2 pi written with too few digits."""
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Ball(Spec):
     """The ball: a disc, or with radius 0 the tutorial's point.
@@ -68,6 +71,7 @@ class _Surface(Spec):
     name: Name = ""
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Wall(_Surface):
     """A segment that bounces the ball on both sides and at its ends.
@@ -116,7 +120,7 @@ class Wall(_Surface):
             yield "one_way", "false where draggable is true"
         length = math.dist(self.start, self.end)
         if self.min_length is not None and self.min_length > length:
-            yield "min_length", f"at most {length:.6g}, the length at first"
+            yield "min_length", f"at most {at_most(length)}, the length at first"
         if self.reach is not None:
             (x0, y0), (x1, y1) = self.reach
             if not all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (self.start, self.end)):
@@ -133,6 +137,7 @@ class Wall(_Surface):
         return box_of((self.start, self.end) if self.reach is None else self.reach)
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Bumper(_Surface):
     """A circle that bounces the ball outside of it, and may move to and fro on a rail.
@@ -164,6 +169,7 @@ class Bumper(_Surface):
         return box_of([point for point in (self.center, self.rail_end) if point is not None], self.radius)
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Arc(_Surface):
     """A part of a circle's line that bounces the ball from inside, from outside and at its ends.
@@ -185,11 +191,11 @@ class Arc(_Surface):
             return end
         start = info.data["start_angle"]
         span, turn = end - start, 2 * math.pi
-        if not SMALLEST_SPAN <= span <= turn + CLOSED:
+        if not SMALLEST_SPAN - CLOSED <= span <= turn + CLOSED:
             raise not_allowed(
                 f"more than start_angle = {start}, by {SMALLEST_SPAN:g} to 2 pi radians (to {start + turn!r})"
             )
-        if turn - SMALLEST_SPAN < span < turn - CLOSED:
+        if turn - SMALLEST_SPAN + CLOSED < span < turn - CLOSED:
             raise not_allowed(
                 f"start_angle + 2 pi = {start + turn!r} for a closed circle, or less by {SMALLEST_SPAN:g} or more"
             )
@@ -223,6 +229,7 @@ def _rounded(share: float) -> float:
     return math.ldexp(round(math.ldexp(share, 40)), -40)
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Paddle(_Surface):
     """A capsule that moves on a straight rail between two stops.
@@ -251,6 +258,7 @@ class Paddle(_Surface):
         return box_of(((x0 - dx, y0 - dy), (x1 + dx, y1 + dy)), self.radius)
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Flipper(_Surface):
     """A capsule that turns about a pivot between two angles: pressed towards the one, released back to the other.
@@ -276,7 +284,7 @@ class Flipper(_Surface):
         if "rest_angle" not in info.data:  # it was refused itself
             return active
         rest = info.data["rest_angle"]
-        if not SMALLEST_SPAN <= abs(active - rest) <= 2 * math.pi:
+        if not SMALLEST_SPAN - CLOSED <= abs(active - rest) <= 2 * math.pi + CLOSED:
             raise not_allowed(f"{SMALLEST_SPAN:g} to 2 pi radians more or less than rest_angle = {rest}")
         return active
 

@@ -1,6 +1,6 @@
 """What one field of a spec takes: numbers, points, flags and names, with the words that an error prints."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from inspect import signature
 from numbers import Real
@@ -11,6 +11,8 @@ import numpy as np
 from pydantic import GetCoreSchemaHandler, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, ErrorDetails, InitErrorDetails, PydanticCustomError, core_schema
+
+from bounce_env.wording import unknown_name
 
 LARGEST = 1e9
 """No number of a scene is larger: products of a few of them stay far from overflow in float64."""
@@ -48,9 +50,9 @@ def not_allowed(words: str) -> PydanticCustomError:
     return PydanticCustomError("not_allowed", "must be {words}", {"words": words})
 
 
-def required(words: str) -> PydanticCustomError:
-    """The error of a field that must be given; `words` say with what value."""
-    return PydanticCustomError("required", "required: {words}", {"words": words})
+def required(words: str, because: Sequence[str | int] = ()) -> PydanticCustomError:
+    """The error of a field that must be given; `words` say with what value, `because` where the reason for it is."""
+    return PydanticCustomError("required", "required: {words}", {"words": words, "because": list(because)})
 
 
 def explain(error: ValidationError, spec: type) -> ValidationError:
@@ -61,17 +63,21 @@ def explain(error: ValidationError, spec: type) -> ValidationError:
     def explained(details: ErrorDetails) -> InitErrorDetails:
         loc, value, message, what = details["loc"], details["input"], details["msg"], details["type"]
         position = loc[0]
-        if isinstance(position, int) and position < len(names) and what != "invalid_key":
+        if isinstance(position, int) and position < len(names):
             loc = (names[position], *loc[1:])
         match what:
             case "missing":
                 allowed = next(item for item in fields[str(loc[0])].metadata if isinstance(item, Allowed))
                 kind, value = required(allowed.words), None  # not the dump of all the other fields
             case "required":
-                kind = PydanticCustomError("required", "{message}", {"message": message})
-            case "unexpected_keyword_argument" | "invalid_key":
-                words = f"unknown field: must be one of {', '.join(names)}"
+                kind = PydanticCustomError("required", "{message}", {**details.get("ctx", {}), "message": message})
+            case "unexpected_keyword_argument":
+                kind = PydanticCustomError("unknown", "{words}", {"words": unknown_name(loc[-1], names, "field")})
+            case "unexpected_positional_argument":
+                words = f"too many values by position: must be at most {position}, {', '.join(names[: int(position)])}"
                 kind = PydanticCustomError("unknown", "{words}", {"words": words})
+            case "multiple_argument_values":
+                kind = PydanticCustomError("twice", "is given twice: must be given by position or by name")
             case _:
                 kind = PydanticCustomError("not_allowed", "{message}", {"message": message})
         return InitErrorDetails(type=kind, loc=loc, input=value)
@@ -79,7 +85,8 @@ def explain(error: ValidationError, spec: type) -> ValidationError:
     return ValidationError.from_exception_data(error.title, list(map(explained, error.errors())))
 
 
-def _number(value: object, low: float, high: float) -> float:
+def real_number(value: object, low: float, high: float) -> float:
+    """Keep a number from `low` to `high`, as float; refuse all else."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError
     number = float(value) + 0.0  # -0.0 becomes 0.0: equal scenes have equal bits
@@ -89,15 +96,15 @@ def _number(value: object, low: float, high: float) -> float:
 
 
 def _zero_or_more(value: object) -> float:
-    return _number(value, 0.0, LARGEST)
+    return real_number(value, 0.0, LARGEST)
 
 
 def _zero_to_one(value: object) -> float:
-    return _number(value, 0.0, 1.0)
+    return real_number(value, 0.0, 1.0)
 
 
 def _positive(value: object) -> float:
-    return _number(value, SMALLEST, LARGEST)
+    return real_number(value, SMALLEST, LARGEST)
 
 
 def _zero_or_positive(value: object) -> float:
@@ -106,11 +113,11 @@ def _zero_or_positive(value: object) -> float:
 
 
 def _share(value: object) -> float:
-    return _number(value, SMALLEST, 1.0)
+    return real_number(value, SMALLEST, 1.0)
 
 
 def _angle(value: object) -> float:
-    return _number(value, -LARGEST_ANGLE, LARGEST_ANGLE)
+    return real_number(value, -LARGEST_ANGLE, LARGEST_ANGLE)
 
 
 def _positive_or_none(value: object) -> float | None:
@@ -121,7 +128,7 @@ def _vector(value: object) -> tuple[float, float]:
     if not isinstance(value, tuple | list | np.ndarray):
         raise TypeError
     x, y = value
-    return _number(x, -LARGEST, LARGEST), _number(y, -LARGEST, LARGEST)
+    return real_number(x, -LARGEST, LARGEST), real_number(y, -LARGEST, LARGEST)
 
 
 def _vector_or_none(value: object) -> tuple[float, float] | None:
@@ -158,6 +165,32 @@ def _name(value: object) -> str:
     if not isinstance(value, str) or not value.isprintable():
         raise TypeError
     return str(value)
+
+
+def whole_number(low: int, high: int, *, none: bool = False) -> Callable[[object], int | None]:
+    """Converter that keeps a whole number from `low` to `high`, as int, and None if it may be; refuses all else."""
+
+    def convert(value: object) -> int | None:
+        if none and value is None:
+            return None
+        if isinstance(value, bool) or not isinstance(value, int | np.integer):
+            raise TypeError
+        if not low <= value <= high:
+            raise ValueError
+        return int(value)
+
+    return convert
+
+
+def one_of(*words: str) -> Allowed:
+    """Annotation of a field that takes one of a few words."""
+
+    def convert(value: object) -> object:
+        if not isinstance(value, str) or value not in words:
+            raise TypeError
+        return str(value)
+
+    return Allowed(f"one of {', '.join(map(repr, words))}", convert)
 
 
 def instance_of(spec: type | UnionType) -> Callable[[object], object]:

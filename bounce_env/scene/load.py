@@ -3,8 +3,9 @@
 import math
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from importlib import resources
 from inspect import signature
 from pathlib import Path
@@ -12,20 +13,17 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import TypeAdapter, ValidationError
 
-from bounce_env.scene.checks import check_scene, label
+from bounce_env.scene.checks import check_scene
 from bounce_env.scene.elements import Ball, Element
+from bounce_env.scene.errors import ABSENT, Location, Problem, SceneError, label, line_of, printable, problems_of
+from bounce_env.scene.places import Place, places_of
 from bounce_env.scene.spec import Scene
+from bounce_env.wording import nearest, shown, unknown_name
 
 _ELEMENT_TYPES: dict[str, type[Element]] = {spec.__name__.lower(): spec for spec in get_args(Element)}
 _BUILTIN = resources.files("bounce_env.scene") / "builtin"
-_LONGEST_VALUE = 60  # characters of a value that a message shows
-_ABSENT = object()
 
 _Spec = TypeVar("_Spec", bound=Scene | Ball | Element)
-
-
-class SceneError(ValueError):
-    """A scene that cannot be read; its text is one line for each thing that is wrong."""
 
 
 def builtin_scenes() -> tuple[str, ...]:
@@ -45,24 +43,39 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     if isinstance(source, str) and not source.endswith(".toml") and not {"/", os.sep} & set(source):
         if source not in builtin_scenes():
             known = ", ".join(builtin_scenes())
-            raise SceneError(f"scene {source!r}: must be one of {known}, or the path of a .toml file")
+            hint = nearest(source, builtin_scenes())
+            raise SceneError(f"scene = {source!r}: must be one of {known}, or the path of a .toml file{hint}")
         return _parse((_BUILTIN / f"{source}.toml").read_bytes(), f"built-in scene {source!r}")
     if not isinstance(source, str | os.PathLike):
-        raise SceneError(f"scene {_shown(source)}: must be the name of a scene or the path of a .toml file")
+        raise SceneError(f"scene = {shown(source)}: must be the name of a scene or the path of a .toml file")
     path = Path(source)
     try:
         data = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
-        raise SceneError(f"{_printable(str(path))}: cannot be read: {error}") from error
-    return _parse(data, _printable(str(path)))
+        raise SceneError(f"{printable(str(path))}: cannot be read: {error}") from error
+    return _parse(data, printable(str(path)))
+
+
+def as_scene(source: str | os.PathLike[str] | Scene | Mapping[str, Any]) -> Scene:
+    """The scene that a user gave in any form: itself, its contents as `scene_to_dict` gives them, its name or path.
+
+    Raises SceneError as `load_scene` does.
+    """
+    if isinstance(source, Scene):
+        return source
+    return scene_from_dict(source) if isinstance(source, Mapping) else load_scene(source)
 
 
 def _parse(data: bytes, source: str) -> Scene:
     try:
-        table = tomllib.loads(data.decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:  # ValueError: not UTF-8, not TOML, or thousands of digits
+        text = data.decode("utf-8-sig")
+        table = tomllib.loads(text)
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise SceneError(f"{source}:{line}: is not a TOML file: has a byte that is no UTF-8: {error}") from error
+    except (ValueError, RecursionError) as error:  # ValueError: not TOML, or thousands of digits
         raise SceneError(f"{source}: is not a TOML file: {error}") from error
-    return scene_from_dict(table, source)
+    return _read(table, source, partial(places_of, text))
 
 
 def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
@@ -70,20 +83,38 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
 
     Raises SceneError with a line for each thing that is wrong.
     """
-    reader = _Reader(source)
+    return _read(data, source, dict)
+
+
+def _read(data: object, source: str, places_of_text: Callable[[], dict[Location, Place]]) -> Scene:
+    reader = _Reader()
     scene = reader.scene(data)
     if scene is None or reader.problems:
-        raise SceneError("\n".join(reader.problems))
+        places = places_of_text()  # only now: nobody asks for the lines of what is right
+        lines = [_line(problem, because, source, reader.labels, places) for problem, because in reader.problems]
+        raise SceneError("\n".join(lines), [problem for problem, _ in reader.problems])
     return scene
+
+
+def _line(
+    problem: Problem, because: Location, source: str, labels: Mapping[int, str], places: Mapping[Location, Place]
+) -> str:
+    """A problem in words, with the line and the literal of the file where there is one.
+
+    The line is that of the key; of a key that is missing that of the reason for it, or of the table that lacks it.
+    """
+    at = because or problem.at
+    place = next((places[at[:n]] for n in range(len(at), 0, -1) if at[:n] in places), None)
+    literal = places[problem.at].literal if problem.at in places else None
+    return line_of(problem, f"{source}:{place.line}" if place else source, labels, literal)
 
 
 class _Reader:
     """Makes the parts of one scene and collects what is wrong with them."""
 
-    def __init__(self, source: str) -> None:
-        self.problems: list[str] = []
-        self._source = source
-        self._labels: dict[object, str] = {}  # of the elements whose type is known
+    def __init__(self) -> None:
+        self.problems: list[tuple[Problem, Location]] = []  # each with the location of what is the reason for it
+        self.labels: dict[int, str] = {}  # of the elements whose type is known
 
     def scene(self, data: object) -> Scene | None:
         if not isinstance(data, Mapping):
@@ -91,7 +122,8 @@ class _Reader:
             return None
         header = {key: value for key, value in data.items() if key not in {"ball", "elements"}}
         # field by field, so that one that is refused does not hide what is wrong between the others
-        accepted = {key: value for key, value in header.items() if self._make(Scene, {key: value})}
+        made = {key for key, value in header.items() if self._make(Scene, {key: value})}
+        accepted = {key: value for key, value in header.items() if key in made and isinstance(key, str)}
         scene = Scene(**accepted)
         ball = self._ball(data.get("ball", {}))
         elements = self._elements(data.get("elements", []))
@@ -124,17 +156,21 @@ class _Reader:
             return None
         types = f"one of {', '.join(_ELEMENT_TYPES)}"
         if "type" not in table:
-            self._refuse(_ABSENT, f"required: {types}", *at, "type")
+            self._refuse(ABSENT, f"required: {types}", *at, "type")
             return None
         kind, name = table["type"], table.get("name")
         if not isinstance(kind, str) or kind not in _ELEMENT_TYPES:
-            self._refuse(kind, f"must be {types}", *at, "type")
+            self._refuse(kind, f"must be {types}{nearest(kind, _ELEMENT_TYPES)}", *at, "type")
             return None
-        self._labels[index] = label(index, kind, name if isinstance(name, str) else "")
+        self.labels[index] = label(index, kind, name if isinstance(name, str) else "")
         fields = {key: value for key, value in table.items() if key != "type"}
         return self._make(_ELEMENT_TYPES[kind], fields, *at)
 
     def _make(self, spec: type[_Spec], fields: Mapping[str, Any], *at: str | int) -> _Spec | None:
+        for key in fields:
+            if not isinstance(key, str):  # pydantic would take the key for the value
+                self._refuse(fields[key], unknown_name(key, signature(spec).parameters, "field"), *at, key)
+        fields = {key: value for key, value in fields.items() if isinstance(key, str)}
         try:
             return TypeAdapter(spec).validate_python(fields)
         except ValidationError as error:
@@ -142,38 +178,36 @@ class _Reader:
             return None
 
     def _report(self, error: ValidationError, *at: str | int) -> None:
-        for details in error.errors():
-            value = _ABSENT if details["type"] == "required" else details["input"]
-            self._refuse(value, details["msg"], *at, *details["loc"])
+        for problem, details in zip(problems_of(error), error.errors(), strict=True):
+            self._refuse(
+                problem.value, problem.message, *at, *problem.at, because=details.get("ctx", {}).get("because")
+            )
 
-    def _refuse(self, value: object, message: str, *at: str | int) -> None:
+    def _refuse(self, value: object, message: str, *at: str | int, because: Sequence[str | int] | None = None) -> None:
         """Note that the value at this place of the scene is wrong."""
-        match at:
-            case "elements", int(index), *field:
-                places = [self._labels.get(index, f"elements[{index}]"), *map(_printable, field)]
-            case _:
-                places = [*map(_printable, at)]
-        if value is not _ABSENT:
-            places = [*places[:-1], " = ".join([*places[-1:], _shown(value)])]
-        self.problems.append(": ".join([self._source, *places, message]))
+        self.problems.append((Problem(at, value, message), tuple(because or ())))
 
 
 def _field_names(spec: type[Scene | Ball]) -> str:
     return ", ".join(signature(spec).parameters)
 
 
-def _shown(value: object) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()  # as TOML spells it
-    try:
-        text = repr(value)
-    except (ValueError, RecursionError):  # thousands of digits, or of brackets
-        return "a value too long to show"
-    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}..."
+def scene_to_dict(scene: Scene) -> dict[str, Any]:
+    """The contents of a scene as JSON and TOML have them, from which `scene_from_dict` makes an equal one.
+
+    Nested dicts and lists of text, numbers and flags; what is None is left out.
+    """
+    elements = [{"type": type(e).__name__.lower(), **_contents(e)} for e in scene.elements]
+    return {**_contents(scene, "ball", "elements"), "ball": _contents(scene.ball), "elements": elements}
 
 
-def _printable(key: object) -> str:
-    return key if isinstance(key, str) and key.isprintable() else repr(key)
+def _contents(spec: Scene | Ball | Element, *skip: str) -> dict[str, Any]:
+    values = {name: getattr(spec, name) for name in signature(type(spec)).parameters if name not in skip}
+    return {name: _as_lists(value) for name, value in values.items() if value is not None}
+
+
+def _as_lists(value: object) -> object:
+    return [*map(_as_lists, value)] if isinstance(value, tuple) else value
 
 
 def dump_scene(scene: Scene) -> str:
@@ -187,8 +221,7 @@ def dump_scene(scene: Scene) -> str:
 
 
 def _assignments(spec: Scene | Ball | Element, *skip: str) -> list[str]:
-    values = {name: getattr(spec, name) for name in signature(type(spec)).parameters if name not in skip}
-    return [f"{name} = {_toml(value)}" for name, value in values.items() if value is not None]
+    return [f"{name} = {_toml(value)}" for name, value in _contents(spec, *skip).items()]
 
 
 def _toml(value: object) -> str:
@@ -197,7 +230,7 @@ def _toml(value: object) -> str:
             return str(value).lower()
         case str():  # printable, as `Name` demands: only these two need an escape
             return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-        case tuple():
+        case list():
             return f"[{', '.join(map(_toml, value))}]"
         case _:
             return repr(value)

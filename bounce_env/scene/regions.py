@@ -10,6 +10,7 @@ from pydantic.dataclasses import dataclass
 from pydantic_core import InitErrorDetails
 
 from bounce_env.scene.base import CONFIG, Box, Point, Spec, away_from, box_of
+from bounce_env.scene.errors import own_words_of_scenes
 from bounce_env.scene.fields import (
     POINT_WORDS,
     POSITIVE_WORDS,
@@ -23,12 +24,14 @@ from bounce_env.scene.fields import (
     not_allowed,
     required,
 )
+from bounce_env.wording import at_least
 
 _T = TypeVar("_T")
 
 _FORMS = "a sensor is a segment (start and end) or a circle (center and radius)"
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Sensor(Spec):
     """A segment or a circle that reports the ball's centre, and never bounces.
@@ -89,6 +92,7 @@ class Sensor(Spec):
         return box_of(self.segment or ())
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Field(Spec):
     """A region in which a constant acceleration is added to gravity.
@@ -150,7 +154,7 @@ def flat_corner(points: tuple[Point, ...], height: float) -> str | None:
     lowest, corner = min(heights)
     if lowest >= height:
         return None
-    return f"such that {list(corner)} is at least {height:.3g} m off the line through the corners beside it"
+    return f"such that {list(corner)} is at least {at_least(height, 2)} m off the line through the corners beside it"
 
 
 def _cross(a: Point, b: Point) -> float:

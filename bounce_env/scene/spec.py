@@ -8,6 +8,7 @@ from pydantic.dataclasses import dataclass
 from bounce_env.scene.base import CONFIG, Box, Spec, union
 from bounce_env.scene.checks import check_scene
 from bounce_env.scene.elements import Ball, Element, Part, moves
+from bounce_env.scene.errors import own_words_of_scenes
 from bounce_env.scene.fields import (
     Allowed,
     PositiveOrNone,
@@ -28,6 +29,7 @@ def _tuple(value: object) -> tuple[object, ...]:
     return tuple(value)
 
 
+@own_words_of_scenes
 @dataclass(frozen=True, kw_only=True, config=CONFIG)
 class Scene(Spec):
     """A table: gravity, the ball and the elements.
@@ -41,7 +43,7 @@ class Scene(Spec):
     elements: their order counts, for it breaks the tie of bounces that are alike, and an element's index is
     its number in the ledger.
 
-    Raises `pydantic.ValidationError` (a ValueError) that names field, value and what is allowed; what only
+    Raises SceneError (a ValueError) that names field, value and what is allowed; what only
     the whole scene can show (names, sizes, speeds) is in `bounce_env.scene.checks`.
     """
 

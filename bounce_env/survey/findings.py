@@ -2,31 +2,52 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.overlap import describe
 from bounce_env.scene import Scene, Sensor
+from bounce_env.survey.crossings import crossings
 from bounce_env.survey.follow import CRUSHES, DRAINED, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
 from bounce_env.survey.places import Cluster, clusters
 from bounce_env.survey.reach import reach_boxes, scores
 from bounce_env.survey.run import Survey, place_size
 
+KINDS = ("problem", "warning", "note")
+
 
 @dataclass(frozen=True)
 class Finding:
-    """A headline, and a line for each place, ball or element; problem: whether the scene fails by it."""
+    """A headline, and a line for each place, ball or element. kind: a scene fails by problems alone."""
 
-    problem: bool
+    kind: Literal["problem", "warning", "note"]
     title: str
     lines: tuple[str, ...] = ()
 
 
 def findings(survey: Survey) -> tuple[Finding, ...]:
-    """All that a survey has found, problems first. Balls are given with the start that brings them there again."""
-    found = (*_traps(survey), *_untouched(survey), *_endless(survey), *_lost(survey), *_broken(survey), *_notes(survey))
-    return tuple(sorted(found, key=lambda finding: not finding.problem))
+    """All that a survey has found, problems first. Balls are given with the start that brings them there again.
+
+    What is a problem because no agent can help is none in a scene that has no part for an agent to move.
+    """
+    found = [*_untouched(survey), *_lost(survey), *_broken(survey), *_crossings(survey.scene), *_notes(survey)]
+    if reach_boxes(survey.scene):
+        found += [*_traps(survey), *_endless(survey)]
+    return tuple(sorted(found, key=lambda finding: KINDS.index(finding.kind)))
+
+
+def _crossings(scene: Scene) -> Iterator[Finding]:
+    found = crossings(scene)
+    if found:
+        lines = [
+            f"{_name(scene, first)} and {_name(scene, second)}, at x {x:.4g}, y {y:.4g} m"
+            for first, second, (x, y) in found
+        ]
+        yield Finding(
+            "warning", f"standing elements run through each other: {_counted(len(found), 'pair')}", tuple(lines)
+        )
 
 
 def _traps(survey: Survey) -> Iterator[Finding]:
@@ -41,7 +62,7 @@ def _untouched(survey: Survey) -> Iterator[Finding]:
     goals = [index for index, element in enumerate(survey.scene.elements) if scores(element)]
     never = [_name(survey.scene, index) for index in goals if survey.touched[index] == 0]
     if never:
-        yield Finding(True, f"no ball of {_counted(len(survey.fates), 'ball')} touches what scores", tuple(never))
+        yield Finding("problem", f"no ball of {_counted(len(survey.fates), 'ball')} touches what scores", tuple(never))
     if not _can_end(survey.scene):
         return
     shut = [
@@ -50,7 +71,7 @@ def _untouched(survey: Survey) -> Iterator[Finding]:
         if survey.touched[index] > 0 and survey.freely[index] == 0
     ]
     if shut:
-        yield Finding(True, "only balls that neither drain nor come within reach touch what scores", tuple(shut))
+        yield Finding("problem", "only balls that neither drain nor come within reach touch what scores", tuple(shut))
 
 
 def _endless(survey: Survey) -> Iterator[Finding]:
@@ -62,7 +83,7 @@ def _endless(survey: Survey) -> Iterator[Finding]:
             f"a ball scores more than {survey.limit} times without coming within reach of a part that an agent moves"
         )
         lines = [f"{_how_often(survey, row)}, {_start(survey, row)}" for row in rows.tolist()]
-        yield Finding(True, f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
+        yield Finding("problem", f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
 
 
 def _how_often(survey: Survey, row: int) -> str:
@@ -75,7 +96,7 @@ def _lost(survey: Survey) -> Iterator[Finding]:
     rows = np.flatnonzero(survey.fates["end"] == LEFT).tolist()
     if survey.is_table and rows:
         title = f"a ball leaves the scene and crosses no drain: {_counted(len(rows), 'ball')}"
-        yield Finding(True, title, tuple(_start(survey, row) for row in rows))
+        yield Finding("problem", title, tuple(_start(survey, row) for row in rows))
 
 
 def _broken(survey: Survey) -> Iterator[Finding]:
@@ -87,9 +108,9 @@ def _broken(survey: Survey) -> Iterator[Finding]:
 def _notes(survey: Survey) -> Iterator[Finding]:
     ends, balls = survey.fates["end"], len(survey.fates)
     if not reach_boxes(survey.scene):
-        yield Finding(False, "the scene has no part that an agent moves: nothing in it is within reach")
+        yield Finding("note", "the scene has no part that an agent moves: nothing in it is within reach")
     if not survey.is_table:
-        yield Finding(False, "walls and drains shut off no inside: balls start anywhere, and may leave the scene")
+        yield Finding("note", "walls and drains shut off no inside: balls start anywhere, and may leave the scene")
     for end, words in (
         (DRAINED, "drained"),
         (LEFT, "left the scene"),
@@ -97,10 +118,11 @@ def _notes(survey: Survey) -> Iterator[Finding]:
     ):
         count = int(((ends == end) | ((ends == STUCK) & (end == PLAYING))).sum())
         if count:
-            yield Finding(False, f"{words}: {_counted(count, 'ball')} ({100 * count / balls:.4g} %)")
-    near = (ends == RESTS) & _within_reach(survey)
-    for finding in _by_place(survey, near, "a ball comes to rest within reach of a part that an agent moves"):
-        yield Finding(False, finding.title, finding.lines)
+            yield Finding("note", f"{words}: {_counted(count, 'ball')} ({100 * count / balls:.4g} %)")
+    where = " within reach of a part that an agent moves" if reach_boxes(survey.scene) else ""
+    near = (ends == RESTS) & (_within_reach(survey) | (not where))
+    for finding in _by_place(survey, near, f"a ball comes to rest{where}"):
+        yield Finding("note", finding.title, finding.lines)
 
 
 def _by_place(survey: Survey, which: npt.NDArray[np.bool_], title: str) -> Iterator[Finding]:
@@ -113,7 +135,7 @@ def _by_place(survey: Survey, which: npt.NDArray[np.bool_], title: str) -> Itera
         f"{_where(group)}: {_counted(len(group.rows), 'ball')}, {_start(survey, rows[group.rows[0]])}"
         for group in groups
     )
-    yield Finding(True, f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
+    yield Finding("problem", f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
 
 
 def _within_reach(survey: Survey) -> npt.NDArray[np.bool_]:

@@ -32,11 +32,23 @@ def test_an_observation_is_a_frame_of_84_by_84_unless_a_size_is_asked(env_id):
     assert env.observation_space == gym.spaces.Box(0, 255, (84, 84, 3), np.uint8)
     observation, _ = env.reset(seed=0)
     assert observation in env.observation_space
-    assert gym.make(env_id, obs="pixels", width=30, height=50).observation_space.shape == (50, 30, 3)
-    wide = gym.make(env_id, obs="pixels", width=50).observation_space.shape
-    assert wide == gym.make(env_id, render_mode="rgb_array", width=50, obs="pixels").observation_space.shape
+    assert gym.make(env_id, obs="pixels", obs_width=30, obs_height=50).observation_space.shape == (50, 30, 3)
+    wide = gym.make(env_id, obs="pixels", obs_width=50).observation_space.shape
     assert wide[1] == 50
     assert wide[0] >= 50  # as high as the table's shape asks
+
+
+@pytest.mark.parametrize("env_id", IDS)
+def test_what_an_agent_is_given_says_nothing_of_the_size_of_films(env_id):
+    films = gym.make(env_id, obs="pixels", render_mode="rgb_array")
+    states = gym.make(env_id, render_mode="rgb_array")
+    for env in (films, states):
+        env.reset(seed=0)
+    assert films.render().shape == states.render().shape
+    assert films.render().shape[0] > 84
+    large = gym.make(env_id, obs="pixels", render_mode="rgb_array", width=300, height=200, obs_height=40)
+    assert large.reset(seed=0)[0].shape[0] == 40
+    assert large.render().shape == (200, 300, 3)
 
 
 @pytest.mark.parametrize("env_id", IDS)
@@ -64,7 +76,7 @@ def test_the_play_is_that_of_the_state(env_id):
 
 
 def test_an_observation_is_what_render_gives_but_for_the_score():
-    env = gym.make(PADDLE, obs="pixels", render_mode="rgb_array", height=200)
+    env = gym.make(PADDLE, obs="pixels", render_mode="rgb_array", height=200, obs_height=200)
     env.reset(seed=0, options={"position": (0.5, 0.6), "velocity": (0.0, 1.5)})
     for _ in range(4):
         observation, *_, info = env.step([0.0])

@@ -2,7 +2,8 @@
 
 import pytest
 
-from bounce_env.scene import Arc, Ball, Bumper, Field, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Ball, Bumper, Field, Paddle, Scene, SceneError, Sensor, Wall
+from bounce_env.scene.errors import ABSENT
 
 FLOOR = Wall((0, 0), (1, 0), name="floor")
 
@@ -12,9 +13,12 @@ def paddle(**changes) -> Paddle:
 
 
 def refusals(**fields) -> list[tuple[str, object, str]]:
-    with pytest.raises(ValueError, match="for Scene\n") as caught:
+    with pytest.raises(SceneError, match="Scene: ") as caught:
         Scene(**fields)
-    return [(".".join(map(str, e["loc"])), e["input"], e["msg"]) for e in caught.value.errors()]
+    return [
+        (".".join(map(str, problem.at)), None if problem.value is ABSENT else problem.value, problem.message)
+        for problem in caught.value.problems
+    ]
 
 
 def test_a_name_is_used_once():

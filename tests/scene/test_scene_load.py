@@ -45,7 +45,8 @@ def problems(tmp_path, monkeypatch):
         Path("mytable.toml").write_bytes(text if isinstance(text, bytes) else text.encode())
         with pytest.raises(SceneError) as caught:
             load_scene("mytable.toml")
-        return str(caught.value).split("\n")
+        # Which line each names is asked in `test_scene_places`.
+        return [re.sub(r"^mytable\.toml:\d+:", "mytable.toml:", line) for line in str(caught.value).split("\n")]
 
     return lines
 
@@ -117,23 +118,23 @@ def test_a_byte_order_mark_is_let_pass(tmp_path):
     ("toml", "shown"),
     [
         ("true", "true"),
-        ('"1"', "'1'"),
-        ('""', "''"),
+        ('"1"', '"1"'),
+        ('""', '""'),
         ("nan", "nan"),
-        ("-nan", "nan"),
+        ("-nan", "-nan"),
         ("inf", "inf"),
         ("-inf", "-inf"),
         ("-1.0", "-1.0"),
         ("-1", "-1"),
-        ("1e300", "1e+300"),
+        ("1e300", "1e300"),
         ("[1.0]", "[1.0]"),
         ("[[1.0]]", "[[1.0]]"),
-        ("{ value = 1 }", "{'value': 1}"),
-        ("1979-05-27", "datetime.date(1979, 5, 27)"),
+        ("{ value = 1 }", "{ value = 1 }"),
+        ("1979-05-27", "1979-05-27"),
         ("1" + "0" * 400, "1" + "0" * 59 + "..."),
-        ("0x" + "f" * 5000, "a value too long to show"),
-        ('"' + "long" * 100 + '"', "'" + ("long" * 100)[:59] + "..."),
-        ('"two\\nlines"', r"'two\nlines'"),
+        ("0x" + "f" * 5000, "0x" + "f" * 58 + "..."),
+        ('"' + "long" * 100 + '"', '"' + ("long" * 100)[:59] + "..."),
+        ('"two\\nlines"', r'"two\nlines"'),
     ],
 )
 def test_a_field_that_is_no_number_is_named(problems, toml, shown):
@@ -151,15 +152,15 @@ def test_a_field_that_is_no_number_is_named(problems, toml, shown):
         ("[0, 0, 0]", "[0, 0, 0]"),
         ("[]", "[]"),
         ("0.0", "0.0"),
-        ('"12"', "'12'"),
+        ('"12"', '"12"'),
         ("[0, nan]", "[0, nan]"),
         ("[inf, 0]", "[inf, 0]"),
-        ("[0, true]", "[0, True]"),
-        ('["0", 0]', "['0', 0]"),
+        ("[0, true]", "[0, true]"),
+        ('["0", 0]', '["0", 0]'),
         ("[[0, 0], [1, 1]]", "[[0, 0], [1, 1]]"),
-        ("[2e9, 0]", "[2000000000.0, 0]"),
-        ("[0x" + "f" * 5000 + ", 0]", "a value too long to show"),
-        ("{ x = 1, y = 2 }", "{'x': 1, 'y': 2}"),
+        ("[2e9, 0]", "[2e9, 0]"),
+        ("[0x" + "f" * 5000 + ", 0]", "[0x" + "f" * 57 + "..."),
+        ("{ x = 1, y = 2 }", "{ x = 1, y = 2 }"),
     ],
 )
 def test_a_field_that_is_no_point_is_named(problems, toml, shown):
@@ -172,8 +173,8 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
 @pytest.mark.parametrize(
     ("text", "where", "message"),
     [
-        ("max_sped = 3", "max_sped = 3", SCENE_FIELDS),
-        ("[[element]]\na = 1", "element = [{'a': 1}]", SCENE_FIELDS),
+        ("max_sped = 3", "max_sped = 3", SCENE_FIELDS.replace(":", " (did you mean 'max_speed'?):", 1)),
+        ("[[element]]\na = 1", "element = [{'a': 1}]", SCENE_FIELDS.replace(":", " (did you mean 'elements'?):", 1)),
         ('"a\\nb" = 1', r"'a\nb' = 1", SCENE_FIELDS),
         ("rest_speed = -0.5", "rest_speed = -0.5", "must be 0 or a number from 1e-09 to 1e+09"),
         ("drag = 1.5", "drag = 1.5", "must be a number > 0 and <= 1 (at least 1e-09)"),
@@ -188,13 +189,13 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         ("elements = [[]]", "elements[0] = []", "must be a table, under a line [[elements]]"),
         ("[[elements]]", "elements[0]: type", f"required: {TYPES}"),
         ("[[elements]]\ntype = []", "elements[0]: type = []", f"must be {TYPES}"),
-        (element("spring", ""), "elements[0]: type = 'spring'", f"must be {TYPES}"),
-        (element("Wall", ENDS), "elements[0]: type = 'Wall'", f"must be {TYPES}"),
+        (element("spring", ""), 'elements[0]: type = "spring"', f"must be {TYPES}"),
+        (element("Wall", ENDS), 'elements[0]: type = "Wall"', f"must be {TYPES} (did you mean 'wall'?)"),
         (element("wall", "start = [0, 0]"), "elements[0] (wall): end", f"required: {POINT}"),
         (
             element("wall", f"{ENDS}\nlength = 1"),
             "elements[0] (wall): length = 1",
-            f"unknown field: must be one of {WALL_FIELDS}",
+            f"unknown field (did you mean 'min_length'?): must be one of {WALL_FIELDS}",
         ),
         (
             element("wall", f"{ENDS}\n__dataclass_self__ = 1"),
@@ -234,7 +235,7 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         (element("sensor", f"{ENDS}\nname = 3"), "elements[0] (sensor): name = 3", "must be printable text"),
         (
             FLOOR + FLOOR,
-            "elements[1] (wall 'floor'): name = 'floor'",
+            "elements[1] (wall 'floor'): name = \"floor\"",
             "must be unique, but is also the name of elements[0] (wall 'floor')",
         ),
         (
@@ -251,7 +252,7 @@ def test_a_field_that_is_no_point_is_named(problems, toml, shown):
         ),
         (
             f"[ball]\nradius = 1e-7\n{FLOOR}",
-            "ball: radius = 1e-07",
+            "ball: radius = 1e-7",
             "must be 0 or at least 1e-06 m, in a scene whose longer side is 1 m and whose largest coordinate is 1 m",
         ),
     ],
@@ -301,7 +302,7 @@ def test_a_refused_field_raises_no_second_complaint(problems):
         ("max_speed = 3\nmax_speed = 4\n\n", r"is not a TOML file: .*\(at line 2, column 14\)"),
         ("a = " + "[" * 5000, "is not a TOML file: "),
         ("max_speed = 1" + "0" * 5000, "is not a TOML file: .*digits"),
-        (b"\xff\xfe", "is not a TOML file: 'utf-8' codec"),
+        (b"\xff\xfe", "is not a TOML file: has a byte that is no UTF-8: 'utf-8' codec"),
     ],
 )
 def test_a_file_that_is_not_toml(problems, text, message):
@@ -329,7 +330,7 @@ def test_an_unknown_name_lists_the_built_in_scenes(name):
     with pytest.raises(SceneError) as caught:
         load_scene(name)
     known = "box, guides, paddle, paddle_levels, pegs, pinball, walls"
-    assert str(caught.value) == f"scene {name!r}: must be one of {known}, or the path of a .toml file"
+    assert str(caught.value).startswith(f"scene = {name!r}: must be one of {known}, or the path of a .toml file")
 
 
 @pytest.mark.parametrize("data", [None, 3, [], "paddle"])
@@ -351,5 +352,5 @@ def test_a_dict_may_come_from_json():
 
 @pytest.mark.parametrize("data", [{3: 4}, {"ball": {3: 4}}, {"elements": [{"type": "sensor", 3: 4}]}])
 def test_a_key_that_is_no_text_is_an_unknown_field(data):
-    with pytest.raises(SceneError, match=r": 3 = 3: unknown field: must be one of "):
+    with pytest.raises(SceneError, match=r": 3 = 4: unknown field: must be one of "):
         scene_from_dict(data)

@@ -1,5 +1,6 @@
 """Arcs, fields, circular sensors and one-way walls in TOML: read as they say, refused by name."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -37,7 +38,8 @@ def problems(tmp_path, monkeypatch):
         Path("mytable.toml").write_text(text)
         with pytest.raises(SceneError) as caught:
             load_scene("mytable.toml")
-        return str(caught.value).split("\n")
+        # Which line each names is asked in `test_scene_places`.
+        return [re.sub(r"^mytable\.toml:\d+:", "mytable.toml:", line) for line in str(caught.value).split("\n")]
 
     return lines
 
@@ -138,7 +140,7 @@ def test_a_file_gives_the_elements_that_it_says(tmp_path):
         ),
         (
             WIDE + element("arc", "center = [0, 0]\nradius = 1e-5\nstart_angle = 0\nend_angle = 1"),
-            "(arc 'it'): radius = 1e-05",
+            "(arc 'it'): radius = 1e-5",
             f"must be at least 0.0001 m, {SIZES}",
         ),
         (element("field", PUSH), "(field 'it'): points", f"required: {POINTS}"),
@@ -150,7 +152,7 @@ def test_a_file_gives_the_elements_that_it_says(tmp_path):
         ),
         (
             element("field", f"{PUSH}points = [[0, 0], [1, 0], [1, true]]"),
-            "(field 'it'): points = [[0, 0], [1, 0], [1, True]]",
+            "(field 'it'): points = [[0, 0], [1, 0], [1, true]]",
             f"must be {POINTS}",
         ),
         (
@@ -165,7 +167,7 @@ def test_a_file_gives_the_elements_that_it_says(tmp_path):
         ),
         (
             WIDE + element("field", f"{PUSH}points = [[0, 0], [2, 0], [1, 1e-8]]"),
-            "(field 'it'): points = [[0.0, 0.0], [2.0, 0.0], [1.0, 1e-08]]",
+            "(field 'it'): points = [[0, 0], [2, 0], [1, 1e-8]]",
             "must be such that [1.0, 1e-08] is at least 1e-07 m off the line through the corners beside it, " + SIZES,
         ),
         (
@@ -179,7 +181,7 @@ def test_a_file_gives_the_elements_that_it_says(tmp_path):
         (element("sensor", "end = [0, 0]"), "(sensor 'it'): start", f"required: {POINT}; {FORMS}"),
         (
             element("sensor", "start = [0, 0]\nend = [1, 0]\nradius = 1"),
-            "(sensor 'it'): radius = 1.0",
+            "(sensor 'it'): radius = 1",
             f"must be left out: {FORMS}",
         ),
         (
@@ -189,7 +191,7 @@ def test_a_file_gives_the_elements_that_it_says(tmp_path):
         ),
         (
             WIDE + element("sensor", "center = [3, 4]\nradius = 1e-5"),
-            "(sensor 'it'): radius = 1e-05",
+            "(sensor 'it'): radius = 1e-5",
             f"must be at least 0.0001 m, {SIZES}",
         ),
         (

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from conftest import soak_count
 
-from bounce_env.scene import Arc, Field, Scene, Sensor, Wall
+from bounce_env.scene import Arc, Field, Scene, SceneError, Sensor, Wall
+from bounce_env.scene.errors import ABSENT
 
 TURN = 2 * math.pi
 POINT = "two numbers [x, y], each from -1e+09 to 1e+09"
@@ -15,9 +16,12 @@ CONVEX = "must be the corners of a strictly convex polygon, in order around it: 
 
 
 def refusals(make) -> list[tuple[str, object, str]]:
-    with pytest.raises(ValueError, match="validation error") as caught:
+    with pytest.raises(SceneError) as caught:
         make()
-    return [(".".join(map(str, e["loc"])), e["input"], e["msg"]) for e in caught.value.errors()]
+    return [
+        (".".join(map(str, problem.at)), None if problem.value is ABSENT else problem.value, problem.message)
+        for problem in caught.value.problems
+    ]
 
 
 # Arcs

@@ -21,7 +21,7 @@ def surveyed(scene: Scene, balls: int = BALLS, **options: int) -> Survey:
 
 
 def problems(result: Survey) -> list[Finding]:
-    return [finding for finding in findings(result) if finding.problem]
+    return [finding for finding in findings(result) if finding.kind == "problem"]
 
 
 def test_nothing_is_wrong_with_a_sound_table():

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from agents.command import Refused
 from bounce_env.scene.fields import Allowed
+from bounce_env.wording import nearest
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -104,7 +105,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise Refused(f"{path}: cannot be read: {error.strerror}") from None
     except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise Refused(f"{path}: is not YAML: {error}") from None
+        raise Refused(f"{path}: is not YAML: {str(error).replace('<byte string>', path.name)}") from None
     if not isinstance(data, dict):
         raise Refused(f"{path}: must be a mapping from environment ids to hyperparameters")
     return data
@@ -117,7 +118,8 @@ def load_config(path: Path, env_id: str, overrides: Mapping[str, Any], model: ty
     """
     data = read_yaml(path)
     if env_id not in data:
-        raise Refused(f"{path}: has no entry {env_id!r}; it has {', '.join(map(str, data)) or 'none'}")
+        hint = nearest(env_id, map(str, data))
+        raise Refused(f"{path}: has no entry {env_id!r}; it has {', '.join(map(str, data)) or 'none'}{hint}")
     entry = data[env_id]
     return checked(model, {**entry, **overrides} if isinstance(entry, dict) else entry, f"{path}: {env_id}")
 
@@ -138,7 +140,8 @@ def _explained(model: type[BaseModel], details: Mapping[str, Any]) -> str:
     if kind == "extra_forbidden":
         for name in details["loc"][:-1]:
             model = model.model_fields[name].annotation
-        return f"unknown key {key!r}: must be one of {', '.join(model.model_fields)}"
+        hint = nearest(str(details["loc"][-1]), model.model_fields)
+        return f"unknown key {key!r}{hint}: must be one of {', '.join(model.model_fields)}"
     message = details["msg"].removeprefix("Value error, ")
     if kind in ("model_type", "dict_type"):
         message = "must be a mapping"

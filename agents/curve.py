@@ -10,6 +10,7 @@ from typing import Self
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from agents.colours import colour_of
 from agents.files import replacing, write_text
 from agents.results import Episodes, estimate
 
@@ -60,19 +61,27 @@ class Curve:
         return cls([Point(**{f.name: f.type(row[f.name]) for f in fields(Point)}) for row in rows])
 
 
-def draw(curve: Curve, played: Mapping[str, Episodes], title: str, folder: Path) -> Path:
-    """Write learning_curve.png: the score in training, and as levels what was measured on held-out episodes."""
+def draw(
+    curve: Curve, played: Mapping[str, Episodes], title: str, folder: Path, *, algo: str, counted: str
+) -> Path:  # fmt: skip
+    """Write learning_curve.png: the score in training, and as levels what was measured on held-out episodes.
+
+    algo: what was trained with, for its colour; counted: what the score counts, for the axis.
+    """
     figure = Figure(figsize=(8, 5), dpi=120, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     millions = [point.steps / 1e6 for point in curve.points]
-    axes.plot(millions, [p.mean_score for p in curve.points], color="C0", label="in training (sampled actions)")
-    for k, (name, episodes) in enumerate(played.items(), start=1):
-        level = estimate(episodes.scores)
-        axes.axhline(level.mean, color=f"C{k}", linestyle="--", label=f"{name}: {level.mean:.1f}")
-        axes.axhspan(level.lo, level.hi, color=f"C{k}", alpha=0.15, linewidth=0)
+    axes.plot(
+        millions, [p.mean_score for p in curve.points], color=colour_of(algo), label="in training (sampled actions)"
+    )
+    for name, episodes in played.items():
+        level, colour = estimate(episodes.scores), colour_of(name, algo)
+        style = ":" if name.endswith("sampled") else "--"
+        axes.axhline(level.mean, color=colour, linestyle=style, label=f"{name}: {level.mean:.1f}")
+        axes.axhspan(level.lo, level.hi, color=colour, alpha=0.15, linewidth=0)
     axes.set_xlabel("environment steps (millions)")
-    axes.set_ylabel("mean score per episode (points)")
+    axes.set_ylabel(f"mean {counted} per episode")
     axes.set_title(f"{title}\nlevels: held-out episodes, mean and 95 % interval", fontsize="medium")
     axes.set_ylim(bottom=0.0)
     axes.legend(fontsize="small")

@@ -18,6 +18,9 @@ from agents.results import Episodes, report, statistics, table
 from agents.runs import versions
 from agents.task import HELD_OUT, Player, Task
 
+MOST_EPISODES = 1_000_000
+"""They are played side by side, each in a world of its own."""
+
 
 def check_ends(task: Task) -> None:
     """Raises Refused where an episode might never end."""
@@ -84,7 +87,9 @@ def evaluate(options: EvaluateOptions) -> int:
     A trained agent is measured twice: with its best action (trained) and with sampled ones (trained_sampled).
     A model file can run code when it is loaded: evaluate only runs that you trust.
     """
-    check_range("episodes", options.episodes, 2)
+    check_range("episodes", options.episodes, 2, MOST_EPISODES)
+    if options.json is not None and not options.json.parent.is_dir():
+        raise Refused(f"--json {options.json}: there is no folder {options.json.parent}")
     task, players = named(options.player, options.env_id, options.env_kwargs)
     played = {name: play(task, player, options.episodes) for name, player in players.items()}
     say(in_words(task, played))

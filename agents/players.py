@@ -12,6 +12,7 @@ from agents.command import Refused
 from agents.look_ahead import LookAhead
 from agents.runs import open_run
 from agents.task import Player, Task
+from bounce_env.wording import nearest
 
 DEFAULT_ENV_ID = "Bounce/Paddle-v0"
 
@@ -38,7 +39,10 @@ def named(
         task = Task(env_id or DEFAULT_ENV_ID, env_kwargs or {})
         known = BASELINES[task.env_id]
         if name not in known:
-            raise Refused(f"{name!r}: must be a run folder, or, for {task.env_id}, one of {', '.join(known)}")
+            allowed = f"a run folder, or, for {task.env_id}, one of {', '.join(known)}"
+            raise Refused(f"{name!r}: must be {allowed}{nearest(name, known)}")
+        if task.env_kwargs.get("obs") == "pixels":
+            raise Refused(f"{task.env_id}: env_kwargs: obs = 'pixels': must be 'state' for the baseline {name!r}")
         return task, {name: known[name](task)}
     run = open_run(Path(name))
     task = Task(

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import tyro
 from PIL import Image
 
-from agents.command import JsonObject, check_range, run, say
+from agents.command import JsonObject, Refused, check_range, run, say
 from agents.files import replacing
 from agents.look_ahead import LookAhead, act
 from agents.players import named
@@ -73,7 +73,10 @@ def write_gif(path: Path, pictures: list[Image.Image], fps: float) -> None:
 
 def record_episode(task: Task, player: Player | LookAhead, folder: Path, seed: int = HELD_OUT) -> list[Path]:
     """Write rollout.mp4 and rollout.gif of the first episode of `seed`, at the speed of play."""
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Refused(f"--output {folder}: cannot be made: {error.strerror}") from error
     fps = task.single().metadata["render_fps"]
     mp4, gif = folder / "rollout.mp4", folder / "rollout.gif"
     pictures = write_mp4(mp4, frames(task, player, seed), fps)

@@ -95,7 +95,10 @@ def new_run(output: Path, task: Task, algo: str, hyperparameters: Hyperparameter
     while folder.exists():
         again += 1
         folder = output / f"{name}-{again}"
-    folder.mkdir(parents=True)
+    try:
+        folder.mkdir(parents=True)
+    except OSError as error:
+        raise Refused(f"--output {output}: cannot be made: {error.strerror}") from error
     run = Run(folder, task, algo, hyperparameters, seed, versions())
     content = {
         task.env_id: hyperparameters.model_dump(),

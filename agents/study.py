@@ -19,6 +19,7 @@ from agents.command import Refused, check_range, run, say
 from agents.config import load_config
 from agents.curve import Curve
 from agents.evaluate import play
+from agents.export import write_agent
 from agents.files import write_text
 from agents.intervals import Interval, bootstrap
 from agents.players import named
@@ -101,13 +102,16 @@ class StudyOptions:
     """Folder with the hyperparameters, <algo>.yml."""
     processes: int = 2
     """Trainings, and then evaluations, side by side."""
+    agents: Path | None = None
+    """Folder for the best agent of each game, as a file that NumPy plays. Default: the folder agents of the output."""
 
 
 def study(options: StudyOptions, studies: Sequence[Study] = STUDIES) -> int:
     """Train PPO with three seeds on each game, DQN and SAC once, and measure them and all baselines.
 
     Writes results.md (a table: mean score, its 95 % interval over trainings and episodes, normalised score, steps and
-    seconds of a training), results.json and learning_curves.png, anew after each game. At most an hour on two cores.
+    seconds of a training), results.json and learning_curves.png, anew after each game, and the best agent of each game.
+    At most an hour on two cores.
     """
     check_range("episodes", options.episodes, 2)
     check_range("processes", options.processes, 1)
@@ -121,11 +125,27 @@ def study(options: StudyOptions, studies: Sequence[Study] = STUDIES) -> int:
         asked = [scores_of(one, folders, options.episodes, pool) for one in studies]
         rows: list[Row] = []
         for k, (one, scores) in enumerate(zip(studies, asked, strict=True), start=1):
-            rows += measured(one, {name: [f.result() for f in each] for name, each in scores.items()}, folders)
+            played = {name: [f.result() for f in each] for name, each in scores.items()}
+            rows += measured(one, played, folders)
+            if not one.train_kwargs:
+                say(f"{one.title}: {write_best(one, played, folders, options.agents or options.output / 'agents')}")
             write_results(options.output, rows, [panel(s, folders, rows) for s in studies[:k] if s.test_kwargs is None])
     say(table(rows).rstrip())
     say(f"all in {options.output}")
     return 0
+
+
+def write_best(
+    one: Study, played: Mapping[str, list[Scores]], folders: Mapping[Training, Path], output: Path
+) -> Path:  # fmt: skip
+    """Write the PPO agent with the highest mean score to a file; returns its path.
+
+    It is the best of a few on the very episodes that its score is of, so that score is a little flattered.
+    """
+    trainings = [training for training in trainings_of(one) if training.algo == "ppo"]
+    scores = dict(zip(trainings, played["PPO, argmax"], strict=True))
+    best = max(trainings, key=lambda training: float(scores[training].mean()))
+    return write_agent(folders[best], output, bootstrap([scores[best]]))
 
 
 def write_results(output: Path, rows: list[Row], panels: list[Panel]) -> None:
@@ -213,7 +233,7 @@ def panel(one: Study, folders: Mapping[Training, Path], rows: list[Row]) -> Pane
     for training in trainings_of(one):
         curves.setdefault(training.algo.upper(), []).append(Curve.read(folders[training]))
     levels = {r.player: r.interval.mean for r in rows if r.study == one.title and r.player in BASELINES[one.env_id]}
-    return Panel(one.title, curves, levels)
+    return Panel(one.title, one.task.counted, curves, levels)
 
 
 def table(rows: list[Row]) -> str:

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from agents.colours import colour_of
 from agents.curve import Curve
 from agents.files import replacing
 
@@ -18,9 +19,13 @@ LEFT_OUT = "look_ahead"
 
 @dataclass(frozen=True)
 class Panel:
-    """One game: the curves of each algorithm's trainings, and the mean score of each baseline."""
+    """One game: the curves of each algorithm's trainings, and the mean score of each baseline.
+
+    counted: what the score counts, for the axis.
+    """
 
     title: str
+    counted: str
     curves: Mapping[str, Sequence[Curve]]
     levels: Mapping[str, float]
 
@@ -44,22 +49,22 @@ def _rounded(score: float) -> str:
 
 
 def _draw(axes: Axes, panel: Panel) -> None:
-    for k, (algo, curves) in enumerate(panel.curves.items()):
+    for algo, curves in panel.curves.items():
         for i, curve in enumerate(curves):
             label = f"{algo}, {len(curves)} trainings" if len(curves) > 1 else algo
             axes.plot(
                 [point.steps / 1e6 for point in curve.points],
                 [point.mean_score for point in curve.points],
-                color=f"C{k}",
+                color=colour_of(algo),
                 linewidth=1.0,
                 alpha=0.8,
                 label=label if i == 0 else None,
             )
     shown = {name: mean for name, mean in panel.levels.items() if name != LEFT_OUT}
-    for k, (name, mean) in enumerate(shown.items(), start=len(panel.curves)):
-        axes.axhline(mean, color=f"C{k}", linestyle="--", linewidth=1.0, label=f"{name}: {_rounded(mean)}")
+    for name, mean in shown.items():
+        axes.axhline(mean, color=colour_of(name), linestyle="--", linewidth=1.0, label=f"{name}: {_rounded(mean)}")
     axes.set_title(panel.title)
     axes.set_xlabel("environment steps (millions)")
-    axes.set_ylabel("mean score in training (points)")
+    axes.set_ylabel(f"mean {panel.counted} in training")
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     axes.legend(fontsize="x-small", loc="lower right")  # what is learned rises: no curve comes there

@@ -14,11 +14,15 @@ from agents.command import Refused
 from bounce_env.registration import ENTRIES
 from bounce_env.sb3 import BounceVecEnv
 from bounce_env.scene import Scene
+from bounce_env.wording import nearest
 
 Player = Callable[[npt.NDArray[np.float32]], npt.NDArray[Any]]
 """From observations (n, size) to actions (n, *shape of an action)."""
 
 ENV_IDS = tuple(entry.id for entry in ENTRIES)
+
+OWN_KEYWORDS = frozenset({"render_mode", "num_envs", "num_threads", "autoreset_mode", "copy", "max_episode_steps"})
+"""Keywords that are set here, as the task needs them."""
 
 HELD_OUT = 10_000
 """First seed of the episodes that evaluation plays; training takes its seeds from 2**32 on (`training_seed`)."""
@@ -45,12 +49,17 @@ class Task:
 
     def __post_init__(self) -> None:
         if self.env_id not in ENV_IDS:
-            raise Refused(f"env_id = {self.env_id!r}: must be one of {', '.join(ENV_IDS)}")
+            hint = nearest(self.env_id, ENV_IDS)
+            raise Refused(f"env_id = {self.env_id!r}: must be one of {', '.join(ENV_IDS)}{hint}")
+        for name in sorted(OWN_KEYWORDS.intersection(self.env_kwargs)):
+            raise Refused(f"{self.env_id}: env_kwargs: {name} = {self.env_kwargs[name]!r}: must be left out here")
         try:
             self.single().close()
             self.batch(1).close()
         except (TypeError, ValueError) as error:
-            raise Refused(f"{self.env_id}: env_kwargs = {dict(self.env_kwargs)}: {error}") from None
+            words = str(error).partition(" was raised from the environment creator")[0]
+            lines = [f"{self.env_id}: env_kwargs: {line}" for line in words.split("\n")]
+            raise Refused("\n".join(lines)) from None
 
     @property
     def resolved_kwargs(self) -> dict[str, Any]:
@@ -64,6 +73,12 @@ class Task:
         """What is played on; of a game with levels the first of them."""
         scene: Scene = self.single().unwrapped.scene
         return scene
+
+    @property
+    def counted(self) -> str:
+        """What the score counts, in words."""
+        words: str = load_env_creator(str(gym.spec(self.env_id).entry_point)).game_type.counted  # type: ignore[attr-defined]
+        return words
 
     @property
     def observation_space(self) -> gym.Space[Any]:

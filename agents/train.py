@@ -87,7 +87,8 @@ def train(options: TrainOptions) -> int:
     players |= {"trained": trained(model), "trained_sampled": trained(model, sampled=True)}
     say(f"playing {options.episodes} held-out episodes with each player ...")
     played = {name: play(run.task, player, options.episodes) for name, player in players.items()}
-    draw(curve, played, f"{run.algo.upper()} on {run.task.env_id}, seed {run.seed}", run.folder)
+    title = f"{run.algo.upper()} on {run.task.env_id}, seed {run.seed}"
+    draw(curve, played, title, run.folder, algo=run.algo, counted=run.task.counted)
     say("filming an episode ...")
     record_episode(run.task, players["trained"], run.folder)
     write_summary(run, model.num_timesteps, seconds, played)

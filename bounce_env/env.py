@@ -76,9 +76,9 @@ def checked_seed(name: str, seed: Any) -> int | None:
     if seed is None:
         return None
     try:
-        return whole(name, seed, 0)
-    except ValueError:
-        raise SeedError(f"{name} = {shown(seed)}: must be None or an integer >= 0") from None
+        return whole(name, seed, 0, allowed="None or an integer >= 0")
+    except ValueError as error:
+        raise SeedError(str(error)) from None
 
 
 def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, dict[str, Any]]:
@@ -206,6 +206,12 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
     def scene(self) -> Scene:
         """The scene of the present episode."""
         return self._batch.scene(0)
+
+    @property
+    def status(self) -> tuple[str, ...]:
+        """What a player wants to know beside picture and score, in words: balls, multiplier, ball save, time."""
+        memory = self._batch.memory
+        return self._batch.game.status(self._batch.episodes[0], None if memory is None else memory[0])
 
     def close(self) -> None:
         """Close the window, if there is one."""

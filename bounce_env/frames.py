@@ -15,9 +15,10 @@ from bounce_env.engine.view import view
 from bounce_env.games.batch import Batch
 from bounce_env.games.options import CONFIG, options, refuse
 from bounce_env.render import Picture, Renderer
+from bounce_env.render.outline import view_box
 from bounce_env.render.projection import LARGEST_SIDE, Projection
 from bounce_env.scene.base import Spec
-from bounce_env.scene.fields import Allowed, instance_of, one_of, real_number, whole_number
+from bounce_env.scene.fields import Allowed, one_of, real_number, true_or_false, whole_number
 from bounce_env.way import Flight, Way
 
 Pixels = npt.NDArray[np.uint8]
@@ -32,11 +33,13 @@ _MOST_LEVELS = 256
 """Levels and sizes of which renderers are kept."""
 
 
-_PIXELS = f"None, or a whole number from 1 to {LARGEST_SIDE} (pixels)"
+_PIXELS = f"None or an integer from 1 to {LARGEST_SIDE} (pixels)"
 Side = Annotated[int | None, Allowed(_PIXELS, whole_number(1, LARGEST_SIDE, none=True))]
 Seconds = Annotated[
     float,
-    Allowed(f"a number from 0 to {LONGEST_TRAIL:g} (seconds)", partial(real_number, low=0.0, high=LONGEST_TRAIL)),
+    Allowed(
+        f"a finite number >= 0 (seconds), at most {LONGEST_TRAIL:g}", partial(real_number, low=0.0, high=LONGEST_TRAIL)
+    ),
 ]
 
 
@@ -56,7 +59,7 @@ class ViewOptions(Spec):
     obs_width: Side = None
     obs_height: Side = None
     trail: Seconds = 0.0
-    show_bounces: Annotated[bool, Allowed("True or False", instance_of(bool))] = False
+    show_bounces: Annotated[bool, Allowed("True or False", true_or_false)] = False
 
     @model_validator(mode="after")
     def _check_obs_size(self) -> Self:
@@ -73,7 +76,7 @@ class Frames:
     """
 
     def __init__(self, batch: Batch, options: ViewOptions) -> None:
-        bounds = batch.game.scenes[0].bounds
+        bounds = view_box(batch.game.scenes[0])
         fit = Projection.fit(bounds, options.width, options.height)
         self.size = (fit.width, fit.height)
         self._pixels: Pixels | None = None
@@ -139,7 +142,7 @@ class Frames:
             while len(self._renderers) >= _MOST_LEVELS:
                 del self._renderers[next(iter(self._renderers))]
             renderer = self._renderers[key] = Renderer(
-                self._batch.scene(world), *size, targets=self._batch.game.targets
+                self._batch.scene(world), *size, targets=self._batch.game.targets, hidden=self._batch.game.hidden
             )
         return renderer.frame(picture)
 

@@ -26,8 +26,8 @@ class OneWorld:
         raise AttributeError(f"a world of {type(self._envs).__name__} has no {name!r}{nearest(name, known)}")
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if hasattr(type(self), name):
-            raise AttributeError(f"{name!r} cannot be set: give it by keyword to make or reset")
+        if hasattr(type(self), name) or name in self._envs.defaults():
+            raise NotImplementedError(f"{name} cannot be set: pass keyword arguments when making the environment")
         super().__setattr__(name, value)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
@@ -81,6 +81,11 @@ class OneWorld:
     def scene(self) -> Any:
         """The scene of the present episode."""
         return self._envs.scene_of(self._index)
+
+    @property
+    def num_envs(self) -> Any:
+        """How many worlds there are."""
+        return self._envs.num_envs
 
     @property
     def unwrapped(self) -> "OneWorld":

@@ -5,13 +5,24 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
+import numpy.typing as npt
+from gymnasium.envs.registration import load_env_creator
 from gymnasium.vector import AutoresetMode
-from stable_baselines3.common.vec_env import VecEnv
-from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
+
+from bounce_env.extras import missing
+
+try:
+    from stable_baselines3.common.vec_env import VecEnv
+    from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
+except ModuleNotFoundError as error:
+    raise missing("sb3", str(error.name), "BounceVecEnv needs") from error
 
 from bounce_env.env import checked_seed
+from bounce_env.games.clone import States
+from bounce_env.games.start import checked_options
 from bounce_env.one_world import OneWorld, row_of
 from bounce_env.vector import BounceVectorEnv
+from bounce_env.wording import shown
 
 # SB3's rollouts need a reset in the same step and observations of their own.
 _FIXED = ("autoreset_mode", "copy", "num_envs", "vectorization_mode")
@@ -29,6 +40,10 @@ class BounceVecEnv(VecEnv):
     def __init__(self, env_id: str, n_envs: int = 1, *, seed: int | None = None, **kwargs: Any) -> None:
         for name in sorted(set(_FIXED).intersection(kwargs)):
             raise ValueError(f"{name} = {kwargs[name]!r}: must be left out, BounceVecEnv sets it")
+        entry_point = gym.spec(env_id).vector_entry_point
+        creator = load_env_creator(entry_point) if isinstance(entry_point, str) else entry_point
+        if creator is None or (isinstance(creator, type) and not issubclass(creator, BounceVectorEnv)):
+            raise ValueError(f"env_id = {shown(env_id)}: must be an environment of bounce_env")
         envs = gym.make_vec(
             env_id,
             num_envs=n_envs,
@@ -37,24 +52,26 @@ class BounceVecEnv(VecEnv):
             **kwargs,
         )
         if not isinstance(envs.unwrapped, BounceVectorEnv):
-            raise ValueError(f"env_id = {env_id!r}: must be an environment of bounce_env")
+            raise ValueError(f"env_id = {shown(env_id)}: must be an environment of bounce_env")
         self._envs: BounceVectorEnv = envs.unwrapped
         self._actions: Any = None
         super().__init__(n_envs, envs.single_observation_space, envs.single_action_space)
         self.metadata = envs.metadata
         self.spec = envs.spec
-        self._lengths = np.zeros(n_envs, np.int64)
-        self._returns = np.zeros(n_envs)
         if checked_seed("seed", seed) is not None:
             self.seed(seed)
 
     def reset(self) -> VecEnvObs:
         """Begin an episode in every world; seeds of `seed()` are used once, then the streams go on."""
-        given = any(seed is not None for seed in self._seeds)
-        observations, info = self._envs.reset(seed=self._seeds if given else None, options=self._option_rows())
-        self._lengths[:] = 0
-        self._returns[:] = 0.0
-        self.reset_infos = self._rows(info)
+        seeds = self._seeds if any(seed is not None for seed in self._seeds) else None
+        for options in self._options:
+            checked_options(options)
+        names = [frozenset(options) for options in self._options]
+        for group in dict.fromkeys(names):  # most often one: those who have the same options are reset together
+            mask = np.array([each == group for each in names])
+            observations, info = self._envs.reset(seed=seeds, options=self._options_of(group, mask))
+            for w in np.flatnonzero(mask).tolist():
+                self.reset_infos[w] = row_of(info, w)
         self._reset_seeds()
         self._reset_options()
         return observations
@@ -67,21 +84,20 @@ class BounceVecEnv(VecEnv):
         """One step of every world. Rewards float32; a finished world is reset, its last observation is in its info."""
         observations, rewards, terminated, truncated, info = self._envs.step(self._actions)
         dones = terminated | truncated
-        self._lengths += 1
-        self._returns += rewards
         infos: list[dict[str, Any]] = self._rows(info)
+        ended = self._envs.ended if dones.any() else None
         for w in np.flatnonzero(dones).tolist():
             self.reset_infos[w] = infos[w]
             final = info["final_info"]
             infos[w] = row_of(final, w)
             infos[w]["terminal_observation"] = info["final_obs"][w]
             infos[w]["TimeLimit.truncated"] = bool(truncated[w] and not terminated[w])
+            assert ended is not None
             infos[w]["episode"] = {
-                "r": round(float(self._returns[w]), 6),  # as Monitor does
-                "l": int(self._lengths[w]),
+                "r": round(float(ended["rewards"][w]), 6),  # as Monitor does
+                "l": int(ended["steps"][w]),
                 "t": infos[w]["game_seconds"],
             }
-            self._lengths[w], self._returns[w] = 0, 0.0
         return observations, rewards.astype(np.float32), dones, infos
 
     def close(self) -> None:
@@ -93,17 +109,13 @@ class BounceVecEnv(VecEnv):
         return [getattr(world, attr_name) for world in self._worlds(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Set an attribute of your own in the worlds of `indices`; AttributeError for what environments have."""
+        """Set an attribute of your own in the worlds of `indices`; NotImplementedError for what environments have."""
         for world in self._worlds(indices):
             setattr(world, attr_name, value)
 
     def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
         """Call a method of the worlds of `indices`, and of no others; see `OneWorld`."""
-        results = [getattr(world, method_name)(*args, **kwargs) for world in self._worlds(indices)]
-        if method_name == "reset":
-            for w in self._get_indices(indices):
-                self._lengths[w], self._returns[w] = 0, 0.0
-        return results
+        return [getattr(world, method_name)(*args, **kwargs) for world in self._worlds(indices)]
 
     def _worlds(self, indices: VecEnvIndices) -> list[OneWorld]:
         return [self._envs.worlds[w] for w in self._get_indices(indices)]
@@ -125,9 +137,13 @@ class BounceVecEnv(VecEnv):
         told = [name for name in ("score", "ball", "level") if name in info]
         return [dict(zip(told, row, strict=True)) for row in zip(*(info[name].tolist() for name in told), strict=True)]
 
-    def _option_rows(self) -> dict[str, Any]:
-        """The options of `set_options`, one dict per world, as the batch takes them: one row per world."""
-        names = self._options[0].keys()
-        if any(options.keys() != names for options in self._options):
-            raise ValueError("options: must have the same names in every world")
-        return {name: [options[name] for options in self._options] for name in names}
+    def _options_of(self, names: frozenset[str], mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
+        """The options of `set_options` of the worlds of `mask`, as the batch takes them: one row per world."""
+        chosen = [self._options[w] for w in np.flatnonzero(mask).tolist()]
+        if "snapshot" in names:
+            others = {name: chosen[0][name] for name in names - {"snapshot"}}
+            snapshots = States.joined([options["snapshot"] for options in chosen])
+            return {**others, "snapshot": snapshots, "reset_mask": mask}
+        # The rows of worlds that are not reset are not looked at, but must be some that are allowed.
+        rows = [options if mask[w] else chosen[0] for w, options in enumerate(self._options)]
+        return {name: [options[name] for options in rows] for name in names} | {"reset_mask": mask}

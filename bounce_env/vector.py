@@ -41,7 +41,8 @@ _AUTORESET = {
 class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]]):
     """A game as a Gymnasium vector environment.
 
-    World i of a reset with `seed` plays, to the bit, what the single env plays after `reset(seed=seed + i)`.
+    World i of a reset with `seed` plays, to the bit, what the single env plays after `reset(seed=seed + i)`. As all of
+    Gymnasium's, it is for one thread of Python at a time; `num_threads` are its own.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 (Gymnasium's)
@@ -61,8 +62,10 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
     def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
         # What is quick to refuse first.
         own = {**self.own_keywords, **keywords}
-        self.num_envs = whole("num_envs", num_envs, 1, MOST_WORLDS)
-        num_threads = whole("num_threads", own["num_threads"], 1, MOST_THREADS)
+        self.num_envs = whole("num_envs", num_envs, 1, MOST_WORLDS, f"a whole number >= 1, at most {MOST_WORLDS}")
+        num_threads = whole(
+            "num_threads", own["num_threads"], 1, MOST_THREADS, f"a whole number >= 1, at most {MOST_THREADS}"
+        )
         mode = _autoreset_mode(own["autoreset_mode"])
         if not isinstance(own["copy"], bool):
             raise ValueError(f"copy = {shown(own['copy'])}: must be True or False")
@@ -110,7 +113,12 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return self._observations(), self._info(mask)
 
     def step(self, actions: Any) -> tuple[Observations, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
-        """One step of every world. Mode DISABLED raises ResetNeeded while a finished world has not been reset."""
+        """One step of every world. Mode DISABLED raises ResetNeeded while a finished world has not been reset.
+
+        Raises ValueError for bad actions, before anything moves, and ClosedEnvironmentError after `close`.
+        """
+        if self.closed:
+            raise gym.error.ClosedEnvironmentError("step: the environment has been closed")
         if self._mode == AutoresetMode.DISABLED and self._ended.any():
             finished = np.flatnonzero(self._ended)[:8].tolist()
             raise gym.error.ResetNeeded(
@@ -156,6 +164,11 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return self._batch.scene(world)
 
     @property
+    def ended(self) -> npt.NDArray[Any]:
+        """What is known of episodes that ended in the last step, a record for each world (`games.episode.BOOKS`)."""
+        return self._batch.results.ended.copy()
+
+    @property
     def autoreset_mode(self) -> AutoresetMode:
         """When a world whose episode has ended is reset."""
         return self._mode
@@ -176,7 +189,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
     def set_attr(self, name: str, values: Any) -> None:
         """Set an attribute of your own in every world: a list or tuple with one value per world, or one for all.
 
-        Raises ValueError for another number of values, AttributeError for what environments have themselves.
+        Raises ValueError for another number of values, NotImplementedError for what environments have themselves.
         """
         each = values if isinstance(values, list | tuple) else [values] * self.num_envs
         if len(each) != self.num_envs:
@@ -289,10 +302,7 @@ def _steps(limit: Any) -> int | None:
     # -1 is `gym.make`'s word for no limit.
     if limit is None or (isinstance(limit, int) and limit == -1):
         return None
-    try:
-        return whole("max_episode_steps", limit, 1, NO_STEP_LIMIT)
-    except ValueError as error:
-        raise ValueError(str(error).replace("must be a", "must be None, -1 or a")) from None
+    return whole("max_episode_steps", limit, 1, NO_STEP_LIMIT, "None, -1 or a whole number >= 1")
 
 
 def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:

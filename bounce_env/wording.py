@@ -28,16 +28,22 @@ def cut(text: str) -> str:
     return text if len(text) <= LONGEST_VALUE else f"{text[:LONGEST_VALUE]}..."
 
 
-def at_least(limit: float, digits: int = 3) -> str:
-    """Return a lower limit in a few digits, rounded so that what is typed from the message passes."""
+def at_least(limit: float, digits: int = 3, slack: float = 0.0) -> str:
+    """Return a lower limit in a few digits, rounded so that what is typed from the message passes.
+
+    slack: by how much a value may be below it.
+    """
     near = f"{limit:.{digits}g}"
-    return near if not float(near) < limit else _rounded(limit, digits, ROUND_CEILING)
+    return near if not float(near) < limit - slack else _rounded(limit, digits, ROUND_CEILING)
 
 
-def at_most(limit: float, digits: int = 3) -> str:
-    """Return an upper limit in a few digits, rounded so that what is typed from the message passes."""
+def at_most(limit: float, digits: int = 3, slack: float = 0.0) -> str:
+    """Return an upper limit in a few digits, rounded so that what is typed from the message passes.
+
+    slack: by how much a value may be above it.
+    """
     near = f"{limit:.{digits}g}"
-    return near if not float(near) > limit else _rounded(limit, digits, ROUND_FLOOR)
+    return near if not float(near) > limit + slack else _rounded(limit, digits, ROUND_FLOOR)
 
 
 def _rounded(limit: float, digits: int, rounding: str) -> str:
@@ -55,8 +61,11 @@ def nearest(name: object, known: Iterable[str]) -> str:
     return f" (did you mean {near[0]!r}?)" if near else ""
 
 
-def real(name: str, value: Any, low: float, high: float, *, unit: str = "") -> float:
-    """Return a number from `low` to `high` as float; anything else is a ValueError that names it and the limits."""
+def real(name: str, value: Any, low: float, high: float, allowed: str = "") -> float:
+    """Return a number from `low` to `high` as float; anything else is a ValueError that names it and what is allowed.
+
+    allowed: in other words than these.
+    """
     if type(value) is float and low <= value <= high:  # nearly all are, and asking the others takes longer
         return value
     number = math.nan
@@ -66,16 +75,19 @@ def real(name: str, value: Any, low: float, high: float, *, unit: str = "") -> f
         except OverflowError:
             number = math.inf
     if not low <= number <= high:  # also false for NaN
-        raise ValueError(f"{name} = {shown(value)}: must be a number from {low:g} to {high:g}{unit and ' ' + unit}")
+        raise ValueError(f"{name} = {shown(value)}: must be {allowed or f'a number from {low:g} to {high:g}'}")
     return number
 
 
-def whole(name: str, value: Any, low: int, high: int | None = None) -> int:
-    """Return a whole number from `low` to `high`; anything else is a ValueError that names it and the limits."""
+def whole(name: str, value: Any, low: int, high: int | None = None, allowed: str = "") -> int:
+    """Return a whole number from `low` to `high`; anything else is a ValueError that names it and what is allowed.
+
+    allowed: in other words than these.
+    """
     is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool | np.timedelta64)
     if not is_whole or value < low or (high is not None and value > high):
-        allowed = f">= {low}" if high is None else f"from {low} to {high}"
-        raise ValueError(f"{name} = {shown(value)}: must be a whole number {allowed}")
+        allowed = allowed or f"a whole number {f'>= {low}' if high is None else f'from {low} to {high}'}"
+        raise ValueError(f"{name} = {shown(value)}: must be {allowed}")
     return int(value)
 
 

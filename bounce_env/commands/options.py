@@ -1,5 +1,6 @@
 """What the command line takes: each command is a dataclass whose fields are its options. Imports tyro: an extra."""
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -7,7 +8,10 @@ from typing import Annotated, TypeAlias
 
 import tyro
 
-PROGRAM = "python -m bounce_env"
+
+def program() -> str:
+    """The program as it was called: bounce-env, or python -m bounce_env."""
+    return "bounce-env" if Path(sys.argv[0]).stem == "bounce-env" else "python -m bounce_env"
 
 
 @dataclass(frozen=True)
@@ -64,8 +68,8 @@ class Draw:
 
     file: Annotated[str, tyro.conf.Positional]
     """Path of a .toml file, or name of a built-in scene."""
-    output: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
-    """The .png file to write."""
+    output: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
+    """The .png file to write. Default: beside the .toml file; for a built-in scene NAME.png in this folder."""
     width: int | None = None
     """Pixels; left out it follows the scene's shape."""
     height: int | None = None
@@ -95,26 +99,57 @@ class Scenes:
 
 @dataclass(frozen=True)
 class Play:
-    """Play a game with the keyboard, in a window.
+    """Play a game with the keyboard, in a window; any key starts it.
 
-    Arrow keys or A and D move; in games with flippers they, or left and right shift, press the left and the right one.
-    P pauses, R begins anew, V starts and stops a film, Esc or Q quits.
+    Arrow keys or A and D move; in games with flippers they, or left and right shift, press the left and the right one,
+    and with --nudge Z and X shove the table. P pauses, R begins anew, V starts and stops a film, Esc or Q quits.
+    The other options are keywords of the games, see help(bounce_env.cards); left out they are the game's.
     """
 
     game: Annotated[str, tyro.conf.Positional]
     """An id such as Bounce/Paddle-v0, or its short name: paddle."""
-    scene: str | None = None
-    """A scene of your own: path of a .toml file, or name of a built-in scene. Default: the game's."""
     seed: int | None = None
     """Of the launches; left out, each play has others."""
+    films: Path = field(default_factory=Path)
+    """Folder for films."""
+    frames: int | None = None
+    """Stop after so many frames, without waiting for a key. Default: when you quit."""
+    scene: str | None = None
+    """A scene of your own: path of a .toml file, or name of a built-in scene."""
     width: int | None = None
     """Of the field in pixels; left out it follows the scene's shape."""
     height: int | None = None
     """Of the field in pixels; left out it follows the scene's shape; 720 where both are."""
-    films: Path = field(default_factory=Path)
-    """Folder for films."""
-    frames: int | None = None
-    """Stop after so many frames. Default: when you quit."""
+    trail: float | None = None
+    """Seconds of the ball's way that are shown."""
+    show_bounces: bool = False
+    """Show the last bounce of a frame in place of its end."""
+    balls: int | None = None
+    """Balls of a game (pinball, walls)."""
+    nudge: bool = False
+    """The table can be shoved (pinball)."""
+    action: str | None = None
+    """Kind of action: continuous or discrete (paddle), discrete or buttons (pinball)."""
+    reward: str | None = None
+    """Kind of reward, which the window does not show."""
+    gamma: float | None = None
+    """Discount of the dense reward (paddle, walls)."""
+    frame_skip: int | None = None
+    """Frames of 1/60 s for which a key acts. Default here: 1."""
+    repeat_action_probability: float | None = None
+    """Probability that a frame repeats the last action."""
+    time_limit: float | None = None
+    """Seconds of play; 0 for no limit."""
+    num_levels: int | None = None
+    """Levels that episodes are played on, 0 for all (paddle)."""
+    start_level: int | None = None
+    """The first of them."""
+    obs: str | None = None
+    """What an agent would be given: state or pixels."""
+    obs_width: int | None = None
+    """Of what an agent would be given, pixels."""
+    obs_height: int | None = None
+    """Of what an agent would be given, pixels."""
 
     def run(self) -> int:
         """Play; returns the exit code."""
@@ -123,16 +158,66 @@ class Play:
         return play_game(self)
 
 
-Command: TypeAlias = Annotated[Scenes, tyro.conf.subcommand("scenes")] | Annotated[Play, tyro.conf.subcommand("play")]
+@dataclass(frozen=True)
+class Watch:
+    """Watch a trained agent play a game, in a window or as a film.
+
+    P pauses, R begins the next episode, V starts and stops a film, Esc or Q quits.
+    """
+
+    game: Annotated[str, tyro.conf.Positional]
+    """An id such as Bounce/Pinball-v0, or its short name: pinball."""
+    seed: int = 10_000
+    """Of the launches; agents are measured on those from 10000 on, and trained on others."""
+    episodes: int | None = None
+    """Stop after so many. Default: when you quit; 1 for a film."""
+    film: Path | None = None
+    """Write an .mp4 file instead of opening a window: for machines without a display."""
+    films: Path = field(default_factory=Path)
+    """Folder for films that V starts."""
+    width: int | None = None
+    """Of the field in pixels; left out it follows the scene's shape."""
+    height: int | None = None
+    """Of the field in pixels; left out it follows the scene's shape; 720 where both are."""
+    trail: float = 0.25
+    """Seconds of the ball's way that are shown."""
+    agent: Path | None = None
+    """An agent of your own: a .npz file that `python -m agents.export` has written. Default: the package's."""
+
+    def run(self) -> int:
+        """Watch; returns the exit code."""
+        from bounce_env.commands.watch import watch_game  # noqa: PLC0415
+
+        return watch_game(self)
 
 
-def read(arguments: Sequence[str]) -> Scenes | Play:
+@dataclass(frozen=True)
+class Doctor:
+    """Print versions, processor, cache folder, display and ffmpeg: what a bug report needs."""
+
+    def run(self) -> int:
+        """Print them; returns the exit code."""
+        from bounce_env.commands.doctor import diagnose  # noqa: PLC0415
+
+        return diagnose()
+
+
+Command: TypeAlias = Scenes | Play | Watch | Doctor
+_Commands: TypeAlias = (
+    Annotated[Watch, tyro.conf.subcommand("watch")]
+    | Annotated[Play, tyro.conf.subcommand("play")]
+    | Annotated[Scenes, tyro.conf.subcommand("scenes")]
+    | Annotated[Doctor, tyro.conf.subcommand("doctor")]
+)
+
+
+def read(arguments: Sequence[str]) -> Command:
     """The command that the words give; for bad ones SystemExit with code 2, after a message."""
-    command: Scenes | Play = tyro.cli(
-        Command,
-        prog=PROGRAM,
+    command: Command = tyro.cli(
+        _Commands,
+        prog=program(),
         args=arguments,
-        description="Scenes and games of bounce_env.",
+        description="Games, agents and scenes of bounce_env. `bounce-env --version` prints the version.",
         config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
     )
     return command

@@ -1,15 +1,10 @@
 """`play`."""
 
-import threading
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
+from dataclasses import asdict
 
-import gymnasium as gym
 import numpy as np
 
+from bounce_env.commands import games
 from bounce_env.commands.options import Play
 from bounce_env.commands.scenes import check_named
 from bounce_env.commands.words import FINE, Refused, check_range, say
@@ -17,30 +12,36 @@ from bounce_env.lab.film import Film
 from bounce_env.lab.keys import controls_for
 from bounce_env.lab.play import play, prepare
 from bounce_env.lab.session import Session
-from bounce_env.registration import ENTRIES
 from bounce_env.render.lazy_pygame import load_pygame
 
-HEIGHT = 720
-PATIENCE = 4.0  # seconds: twice what it takes to load kernels from disk
-LARGEST_SEED = 2**32 - 1
+NO_KEYWORDS = ("game", "seed", "films", "frames")
+"""The options that are not the environment's keywords."""
 
 
 def play_game(options: Play) -> int:
     """Open a window with the game, until the player quits."""
-    env_id = game_id(options.game)
-    env = _made(env_id, options)
-    short = _short(env_id)
+    env_id = games.game_id(options.game)
+    games.check_seed_and_folder(options.seed, options.films)
+    if options.frames is not None:
+        check_range("frames", options.frames, 1)
+    if options.scene is not None:
+        check_named(options.scene)
+    games.check_display(f"on such a machine `bounce-env watch {options.game} --film FILE.mp4` shows an agent")
+    env = games.made(env_id, keywords(options))
+    try:
+        controls_for(env.action_space)
+    except ValueError as error:
+        raise Refused(str(error)) from error
     seed = int(np.random.SeedSequence().generate_state(1)[0]) if options.seed is None else options.seed
     say(f"{env_id}, launches of seed {seed}")
     fps = float(env.metadata["render_fps"])
 
     def film() -> Film:
         height, width, _ = session.frame.shape
-        return Film(_unused(options.films, f"{short}-{time.strftime('%Y%m%d-%H%M%S')}"), (width, height), fps)
+        return games.new_film(options.films, env_id, (width, height), fps)
 
-    with _said_if_slow("compiling, about a minute: only where it is played for the first time"):
-        prepare(env)
-    session = Session(env, seed, film)
+    prepare(env)
+    session = Session(env, seed, film, waits=options.frames is None)
     try:
         play(session, env_id, fps, options.frames)
     except load_pygame().error as error:
@@ -53,61 +54,12 @@ def play_game(options: Play) -> int:
     return FINE
 
 
-@contextmanager
-def _said_if_slow(words: str) -> Iterator[None]:
-    """Say why it takes long, where it does: whether all kernels are on disk is not known before they are loaded."""
-    timer = threading.Timer(PATIENCE, say, [words])
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
-
-
-def game_id(name: str) -> str:
-    """The id of a game, given as it is or as its short name; of several versions the last in the table.
-
-    Raises Refused for any other name.
-    """
-    ids = {entry.id: entry.id for entry in ENTRIES}
-    names = {_short(env_id): env_id for env_id in ids} | ids
-    if name not in names:
-        raise Refused(f"game {name!r}: must be one of {', '.join(names)}")
-    return names[name]
-
-
-def _short(env_id: str) -> str:
-    """paddle for Bounce/Paddle-v0."""
-    return env_id.removeprefix("Bounce/").rsplit("-v", 1)[0].lower()
-
-
-def _made(env_id: str, options: Play) -> gym.Env[Any, Any]:
-    """The environment, after everything that may be wrong has been looked at."""
-    if options.seed is not None:
-        check_range("seed", options.seed, 0, LARGEST_SEED)
-    if options.frames is not None:
-        check_range("frames", options.frames, 1)
-    if not options.films.is_dir():
-        raise Refused(f"--films {options.films}: must be a folder that is there")
-    kwargs: dict[str, Any] = {"width": options.width, "height": options.height}
-    if options.width is None and options.height is None:
-        kwargs["height"] = HEIGHT
-    if options.scene is not None:
-        check_named(options.scene)
-        kwargs["scene"] = options.scene
-    load_pygame()
-    try:
-        env = gym.make(env_id, render_mode="rgb_array", frame_skip=1, disable_env_checker=True, **kwargs)
-        controls_for(env.action_space)
-    except ValueError as error:  # a scene that cannot be read or played, a size, an action space without keys
-        raise Refused(str(error)) from error
-    return env
-
-
-def _unused(folder: Path, stem: str) -> Path:
-    """A name that no film has: two may begin in one second."""
-    path, number = folder / f"{stem}.mp4", 1
-    while path.exists():
-        number += 1
-        path = folder / f"{stem}-{number}.mp4"
-    return path
+def keywords(options: Play) -> dict[str, object]:
+    """The environment's keywords among the options: those that were given, and what suits a person better."""
+    given = {name: value for name, value in asdict(options).items() if name not in NO_KEYWORDS}
+    given = {name: value for name, value in given.items() if value is not None and value is not False}
+    if given.get("time_limit") == 0:
+        given["time_limit"] = None
+    if given.get("nudge"):
+        given.setdefault("action", "buttons")  # a flipper may be held while the table is shoved
+    return {"frame_skip": 1, **given}

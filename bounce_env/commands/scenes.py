@@ -9,6 +9,7 @@ import numpy as np
 from bounce_env.commands.words import FINE, PROBLEMS, Refused, counted, say
 from bounce_env.files import replacing
 from bounce_env.scene import Scene, SceneError, builtin_scenes, load_scene
+from bounce_env.wording import nearest
 
 
 def list_scenes() -> int:
@@ -30,20 +31,28 @@ def outline(scene: Scene) -> str:
 
 def check_named(source: str) -> None:
     """Raises Refused where `source` is neither the path of a file nor the name of a built-in scene."""
-    is_path = source.endswith(".toml") or "/" in source or os.sep in source
-    if is_path and not Path(source).is_file():
-        raise Refused(f"scene {source!r}: there is no such file")
-    if not is_path and source not in builtin_scenes():
-        raise Refused(f"scene {source!r}: must be one of {', '.join(builtin_scenes())}, or the path of a .toml file")
+    if is_path(source) and not Path(source).is_file():
+        why = "is a folder, must be a .toml file" if Path(source).is_dir() else "there is no such file"
+        raise Refused(f"scene {source!r}: {why}")
+    if not is_path(source) and source not in builtin_scenes():
+        known, hint = ", ".join(builtin_scenes()), nearest(source, builtin_scenes())
+        raise Refused(f"scene {source!r}: must be one of {known}, or the path of a .toml file{hint}")
 
 
-def draw_scene(source: str, output: Path, width: int | None, height: int | None) -> int:
-    """Write the picture of a scene to `output`; its parts are where they are after a reset."""
+def is_path(source: str) -> bool:
+    """Whether a scene is given as the path of a file, not by a built-in's name."""
+    return source.endswith(".toml") or "/" in source or os.sep in source
+
+
+def draw_scene(source: str, output: Path | None, width: int | None, height: int | None) -> int:
+    """Write the picture of a scene, parts where they are after a reset, to `output`; None for beside the scene."""
     from bounce_env.engine.overlap import cores_at_start  # noqa: PLC0415 (imports numba: after what is quick to refuse)
     from bounce_env.render import Picture, Renderer  # noqa: PLC0415
     from bounce_env.render.lazy_pygame import load_pygame  # noqa: PLC0415
 
     check_named(source)
+    if output is None:
+        output = Path(source).with_suffix(".png") if is_path(source) else Path(f"{source}.png")
     if output.suffix.lower() != ".png":
         raise Refused(f"--output {output}: must end in .png")
     if not output.parent.is_dir():

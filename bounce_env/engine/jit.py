@@ -156,7 +156,13 @@ def kernel(python_function: F) -> F:
 
 def from_python(compiled: F) -> F:
     """A `function` as an entry point of its own, for what calls it from Python: packing, tests."""
-    return kernel(getattr(compiled, "py_func", compiled))
+    return kernel(interpreted(compiled))
+
+
+def interpreted(compiled: F) -> F:
+    """The Python of a `function`, for what is called too rarely to be compiled for it."""
+    python: F = getattr(compiled, "py_func", compiled)
+    return python
 
 
 def function_of_feature(absent: Callable[..., Any]) -> Callable[[F], F]:
@@ -170,12 +176,12 @@ def function_of_feature(absent: Callable[..., Any]) -> Callable[[F], F]:
         def chosen(first: Any, *rest: Any) -> Callable[..., Any]:
             return absent if first == nb_types.none else present
 
-        def interpreted(first: Any, *rest: Any) -> Any:
+        def plain(first: Any, *rest: Any) -> Any:
             return absent(first, *rest) if first is None else present(first, *rest)
 
-        functools.update_wrapper(interpreted, present)
-        overload(interpreted, strict=False, jit_options=POLICY)(chosen)
-        return interpreted  # type: ignore[return-value]
+        functools.update_wrapper(plain, present)
+        overload(plain, strict=False, jit_options=POLICY)(chosen)
+        return plain  # type: ignore[return-value]
 
     return decorate
 

@@ -26,7 +26,7 @@ from bounce_env.engine.snapshot import from_bytes, to_bytes
 from bounce_env.engine.view import view
 from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor, Wall
 from bounce_env.scene.fields import LARGEST
-from bounce_env.wording import numbers, real, shown, unknown_name, whole
+from bounce_env.wording import nearest, numbers, real, shown, whole
 
 Floats = npt.NDArray[np.float64]
 
@@ -85,8 +85,8 @@ class World:
         event in order of time; design.md, "Ledger". Raises ValueError for arguments that are not allowed.
         """
         self._check_started()
-        seconds = real("seconds", seconds, 0.0, LARGEST)
-        max_events = whole("max_events", max_events, 1, MOST_EVENTS)
+        seconds = real("seconds", seconds, 0.0, LARGEST, f"finite and >= 0, at most {LARGEST:g}")
+        max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
         world = self._state.worlds[0]
@@ -116,7 +116,8 @@ class World:
         self._check_started()
         names = {part.name: m for m, (_, part) in enumerate(self._parts) if part.name}
         if not isinstance(name, str) or name not in names:
-            raise ValueError(f"command {shown(name)}: {unknown_name(name, sorted(names))} (the scene's parts)")
+            hint = nearest(name, names)
+            raise ValueError(f"command: {shown(name)} must be one of the scene's parts: {sorted(names)}{hint}")
         part = self._parts[names[name]][1]
         if isinstance(part, Wall):
             command_wall(self._state, self._tables, names[name], _velocities(name, value, self.scene.max_speed))
@@ -141,7 +142,8 @@ class World:
             e.name: i for i, e in enumerate(self.scene.elements) if e.name and not isinstance(e, Sensor | Field)
         }
         if not isinstance(name, str) or name not in bouncing:
-            raise ValueError(f"enable {shown(name)}: {unknown_name(name, sorted(bouncing))} (what bounces the ball)")
+            known = f"{sorted(bouncing)}{nearest(name, bouncing)}"
+            raise ValueError(f"enable: {shown(name)} must be one of the scene's bouncing elements: {known}")
         if not isinstance(on, bool | np.bool_):
             raise ValueError(f"enable {name!r} = {shown(on)}: must be True or False")
         disabled = self._state.disabled
@@ -166,7 +168,7 @@ class World:
         self._check_started()
         rows = numbers(change)
         if rows is None or rows.shape != (2,) or not (abs(rows) <= LARGEST).all():
-            raise ValueError(f"push = {shown(change)}: must be (dvx, dvy), each from {-LARGEST:g} to {LARGEST:g} m/s")
+            raise ValueError(f"push = {shown(change)}: must be (dvx, dvy), finite, at most {LARGEST:g} m/s")
         push_balls(self._state, self._tables, float(rows[0]), float(rows[1]))
 
     def replace(self, scene: Scene) -> None:
@@ -292,9 +294,8 @@ class World:
         given = numbers(value)
         rows = np.empty(0) if given is None else np.array(given, ndmin=2)
         if rows.shape != (self._balls, 2):
-            one = "a pair of numbers (x, y)"
-            allowed = one if self._balls == 1 else f"{one} for each of {self._balls} balls"
-            raise ValueError(f"{name} = {shown(value)}: must be {allowed}")
+            each = "" if self._balls == 1 else f", or one row of it for each of {self._balls} balls"
+            raise ValueError(f"{name} = {shown(value)}: must be (x, y), numbers{each}")
         if not (abs(rows) <= LARGEST).all():  # also false for NaN
             raise ValueError(f"{name} = {shown(value)}: must be finite, each from {-LARGEST:g} to {LARGEST:g}")
         return rows
@@ -325,8 +326,5 @@ def _velocities(name: str, value: object, max_speed: float | None) -> Floats:
 
 
 def _speed(name: str, value: Any, fastest: float) -> float:
-    try:
-        return real(name, value, -fastest, fastest)
-    except ValueError:
-        allowed = f"a number from {-fastest!r} to {fastest!r} m/s"
-        raise ValueError(f"command {name!r} = {shown(value)}: must be {allowed}") from None
+    allowed = f"finite and at most {fastest!r} m/s either way"
+    return real(f"command {name!r}", value, -fastest, fastest, allowed)

@@ -39,7 +39,8 @@ class Continuous:
             raise ValueError(f"actions of shape {actions.shape}: must be {what}")
         if actions.dtype.kind not in "fiu":
             raise ValueError(f"actions = {shown(actions)}: must be numbers")
-        return actions.reshape(worlds, self.size).astype(np.float64, copy=False)
+        # A kernel is compiled for arrays of one kind.
+        return np.require(actions.reshape(worlds, self.size), np.float64, ("C", "W"))
 
 
 @dataclass(frozen=True)

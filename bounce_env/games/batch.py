@@ -13,7 +13,7 @@ import numpy.typing as npt
 from bounce_env.engine.layout import Array, State, new_state
 from bounce_env.engine.view import view
 from bounce_env.games.clone import States, clone_rows, restore_rows
-from bounce_env.games.episode import END_REASONS, EPISODE, Results, Worlds, bind, new_results
+from bounce_env.games.episode import END_REASONS, EPISODE, SAME_STEP, Results, Worlds, bind, new_results
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
 from bounce_env.games.pace import NO_STEP_LIMIT
@@ -116,7 +116,12 @@ class Batch:
         return clone_rows(self._digest, self._rows(), mask)
 
     def restore(self, states: States, mask: Mask) -> None:
-        """Let the worlds of `mask` go on from `states`; raises ValueError where they are not of an equal batch."""
+        """Let the worlds of `mask` go on from `states`; raises ValueError where they are not of an equal batch.
+
+        And, where worlds are reset in the step in which their episode ends, for states of episodes that have ended.
+        """
+        if self.autoreset == SAME_STEP and isinstance(states, States) and states.any_ended():
+            raise ValueError("state of an episode that has ended: there is none to go on with in mode SAME_STEP")
         restore_rows(self._digest, self._rows(), mask, states)
         self._own_scenes()
 

@@ -1,11 +1,13 @@
 """Copies of all that worlds are, to go on from: what a player needs that looks ahead."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.layout import Array
+from bounce_env.games.episode import EPISODE, RUNNING
 from bounce_env.wording import shown
 
 
@@ -24,6 +26,17 @@ class States:
 
     def __getitem__(self, rows: slice | npt.NDArray[np.generic]) -> "States":
         return States(self.game, tuple(array[rows] for array in self.arrays))
+
+    def any_ended(self) -> bool:
+        """Whether the episode of any of the worlds has ended."""
+        return any((array["end"] != RUNNING).any() for array in self.arrays if array.dtype == EPISODE)
+
+    @classmethod
+    def joined(cls, states: Sequence["States"]) -> "States":
+        """The rows of several states, one after the other; ValueError where they are of several games."""
+        if not all(isinstance(one, cls) and one.game == states[0].game for one in states):
+            raise ValueError(f"states = {shown(states)}: must be what clone_state() returned, all of one game")
+        return cls(states[0].game, tuple(map(np.concatenate, zip(*(one.arrays for one in states), strict=True))))
 
 
 def clone_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_]) -> States:

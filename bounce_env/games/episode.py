@@ -18,14 +18,17 @@ EPISODE = record(
     world_seed="u8", episodes="i8",  # the world's stream of episodes and how many it has begun
     seed="u8",  # of the present episode
     frames="i8",  # 1 / fps each, since the episode began
-    steps="i8",  # of the agent, since the episode began
+    steps="i8", rewards="f8",  # of the agent, since the episode began: how many, and their sum
     score="f8",
     ball="i8",  # which one is played, from 0 on
     level="i8",  # which one it is played on; NO_LEVEL in a game without
     end="i8",  # how the episode has ended
 )  # fmt: skip
 
-BOOKS = record(seconds="f8", score="f8", ball="i8", level="i8", end="i8", bounces="i8", speed_capped="i8")
+BOOKS = record(
+    seconds="f8", steps="i8", rewards="f8", score="f8", ball="i8", level="i8", end="i8", bounces="i8",
+    speed_capped="i8",
+)  # fmt: skip
 
 # How an episode ends; END_REASONS names them in info["end_reason"].
 RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET, ALL_PLAYED = 0, 1, 2, 3, 4
@@ -141,7 +144,7 @@ def begin_episode(worlds: Worlds, w: int) -> Record:
     episode = worlds.episodes[w]
     episode.seed = bits(episode.world_seed, EPISODES, episode.episodes)
     episode.episodes += 1
-    episode.frames, episode.steps, episode.score = 0, 0, 0.0
+    episode.frames, episode.steps, episode.rewards, episode.score = 0, 0, 0.0, 0.0
     episode.ball, episode.level, episode.end = 0, NO_LEVEL, RUNNING
     for j in range(worlds.held.shape[1]):
         worlds.held[w, j] = 0.0
@@ -164,6 +167,7 @@ def close_books(worlds: Worlds, w: int) -> None:
     """Note how the episode of world `w` ended, before anything of it is reset."""
     ended, episode, world = worlds.results.ended[w], worlds.episodes[w], worlds.state.worlds[w]
     ended.seconds, ended.score = episode.frames / FPS, episode.score
+    ended.steps, ended.rewards = episode.steps, episode.rewards
     ended.ball, ended.level, ended.end = episode.ball, episode.level, episode.end
     ended.bounces, ended.speed_capped = world.bounces, world.speed_capped
     for j in range(worlds.counters.shape[1]):
@@ -175,6 +179,6 @@ def open_books(results: Results, w: int) -> None:
     """Forget how an episode of world `w` ended."""
     ended = results.ended[w]
     ended.seconds, ended.score, ended.ball, ended.level, ended.end = 0.0, 0.0, 0, 0, RUNNING
-    ended.bounces, ended.speed_capped = 0, 0
+    ended.steps, ended.rewards, ended.bounces, ended.speed_capped = 0, 0.0, 0, 0
     for j in range(results.counted.shape[1]):
         results.counted[w, j] = 0.0

@@ -23,12 +23,15 @@ class Game:
     observation_low, observation_high: bounds of what is observed.
     field: x_min, y_min, x_max, y_max [m] of where a ball may be launched by the options of a reset.
     targets: the elements, circular sensors, that `begin` and `play` put where they want them.
+    hidden: the elements that pictures do not show: what only the rules or the builder of the table look at.
     """
 
+    counted: ClassVar[str]  # what the score counts, in words
     counters: ClassVar[tuple[str, ...]]  # what is told at an episode's end of what the game has counted
     memory: ClassVar[np.dtype[Any] | None] = None  # what its rules remember of a world
     has_levels: bool = False
     targets: tuple[int, ...] = ()
+    hidden: tuple[int, ...] = ()
 
     actions: Actions
     rules: Any
@@ -63,11 +66,25 @@ class Game:
         """Which elements are lit in a world of which the rules remember this; None: the game has no lamps."""
         return None
 
+    def status(self, episode: Any, memory: Any) -> tuple[str, ...]:
+        """What a player wants to know beside the picture and the score, in a few words each: the time, at least.
+
+        episode: a record of `games.episode.EPISODE`; memory: what the rules remember of the world.
+        """
+        limit = self.rules.pace.limit
+        of = "" if math.isinf(limit) else f" of {clock(limit / FPS)}"
+        return (f"Time {clock(episode.frames / FPS)}{of}",)
+
     @property
     def most_steps(self) -> int | None:
         """How many steps an episode has at most; None where there is no time limit."""
         pace = self.rules.pace
         return None if math.isinf(pace.limit) else math.ceil(pace.limit / pace.frame_skip)
+
+
+def clock(seconds: float) -> str:
+    """A time as a clock shows it: 1:05."""
+    return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"
 
 
 def repeated(tables: Tables, worlds: int) -> Tables:

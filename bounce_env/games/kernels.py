@@ -109,11 +109,14 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
             open_books(results, w)
             continue
         results.rewards[w] = play(rules, worlds, actions, w)
+        episodes[w].rewards += results.rewards[w]
         if results.ended[w].end != RUNNING:
             open_books(results, w)
         end = episodes[w].end
         results.terminated[w] = end in (DRAINED, ALL_PLAYED)
-        results.truncated[w] = end in (TIME_LIMIT, OUT_OF_BUDGET)
+        # What ends in the last step that there may be is truncated, too, as by Gymnasium's TimeLimit.
+        last = end != RUNNING and episodes[w].steps >= rules.pace.steps
+        results.truncated[w] = last or end in (TIME_LIMIT, OUT_OF_BUDGET)
         observe(rules, worlds, w, results.observations)
         if end != RUNNING:
             ended += 1

@@ -14,7 +14,7 @@ from bounce_env.games.levels import END_OF_LEVELS
 from bounce_env.scene import Scene
 from bounce_env.scene.base import Spec
 from bounce_env.scene.errors import own_words
-from bounce_env.scene.fields import Allowed, instance_of, not_allowed, one_of, real_number, whole_number
+from bounce_env.scene.fields import Allowed, instance_of, not_allowed, one_of, real_number, true_or_false, whole_number
 
 CONFIG = ConfigDict(arbitrary_types_allowed=True, extra="forbid")
 
@@ -44,7 +44,7 @@ def _gamma(value: object) -> float:
 TimeLimit = Annotated[float | None, Allowed(_SECONDS, _time_limit)]
 Gamma = Annotated[float, Allowed("a number > 0 and <= 1", _gamma)]
 Balls = Annotated[int, Allowed("a whole number from 1 to 9", whole_number(1, 9))]
-Flag = Annotated[bool, Allowed("True or False", instance_of(bool))]
+Flag = Annotated[bool, Allowed("True or False", true_or_false)]
 
 
 @dataclass(frozen=True, kw_only=True, config=CONFIG)

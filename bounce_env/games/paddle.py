@@ -241,6 +241,7 @@ class PaddleGame(Game):
     Raises ValueError where the scene cannot be played (`field_of`), SceneError where it cannot be read.
     """
 
+    counted = "bumper hits"
     counters = ("points_bumpers", "touches")
 
     def __init__(self, options: PaddleOptions) -> None:

@@ -8,13 +8,14 @@ import numpy.typing as npt
 
 from bounce_env.engine.command import command
 from bounce_env.engine.disturb import disturb, place
-from bounce_env.engine.jit import Table, function
+from bounce_env.engine.jit import Table, function, interpreted
 from bounce_env.engine.layout import OUT, Array, State
 from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
 from bounce_env.engine.view import ball_now
 from bounce_env.games.actions import Buttons, Discrete
 from bounce_env.games.episode import (
     DRAINED,
+    FPS,
     OUT_OF_BUDGET,
     RUNNING,
     TIME_LIMIT,
@@ -66,6 +67,7 @@ from bounce_env.games.table import (
     ROLLOVER,
     TARGET,
     Layout,
+    hidden_of,
     layout_of,
     outline,
 )
@@ -329,6 +331,7 @@ class PinballGame(Game):
     Raises ValueError where the scene cannot be played (`games.table`), SceneError where it cannot be read.
     """
 
+    counted = "points"
     counters = (
         "points_bumpers",
         "points_slingshots",
@@ -360,6 +363,7 @@ class PinballGame(Game):
             codes += (float(NUDGE_LEFT), float(NUDGE_RIGHT))
         self.actions = Buttons(4 if options.nudge else 2) if options.action == "buttons" else Discrete(codes)
         self.field = outline(self.scenes[0])
+        self.hidden = hidden_of(self.scenes[0])
         self.observation_low, self.observation_high = self._bounds(layout, options)
 
     @property
@@ -375,6 +379,16 @@ class PinballGame(Game):
         rollovers = (layout.roles[0] == ROLLOVER) & ((memory["passed"] >> lamps) & 1 == 1)
         lit: npt.NDArray[np.bool_] = targets | rollovers
         return lit
+
+    def status(self, episode: Any, memory: Any) -> tuple[str, ...]:
+        """Which ball is played, the multiplier, and what is left of the ball save; or that the table is tilted."""
+        words = [f"Ball {episode.ball + 1} of {self.rules.balls}", f"x{memory.multiplier}"]
+        save = interpreted(save_left)(memory, episode.frames)
+        if memory.tilted:
+            words.append("Tilt")
+        elif save > 0:
+            words.append(f"Ball save {math.ceil(save / FPS)} s")
+        return (*words, *super().status(episode, memory))
 
     def _bounds(
         self, layout: Layout, options: PinballOptions

@@ -78,7 +78,8 @@ def _check(game: Game, row: npt.NDArray[np.float64], given: Mapping[str, Any]) -
         if not (left - slack <= x <= right + slack and below - slack <= y <= above + slack):
             raise ValueError(
                 f"options['position'] = {_given(given, 'position', (x, y))}: must be on the field, "
-                f"x {at_least(left, 6)} to {at_most(right, 6)} and y {at_least(below, 6)} to {at_most(above, 6)}"
+                f"x {at_least(left, 6, slack)} to {at_most(right, 6, slack)} "
+                f"and y {at_least(below, 6, slack)} to {at_most(above, 6, slack)}"
             )
         row[:2] = cleared(scene, cores_at_start(scene), x, y)
     if scene.max_speed is not None and math.hypot(vx, vy) > scene.max_speed:

@@ -46,6 +46,15 @@ class Layout(NamedTuple):
     cooldowns: Array  # (scenes, bumpers) float64: [1/s] from what is left of a cooldown to what is observed
 
 
+HIDDEN = ("in_play", "plunger", "brace")
+"""What the names begin with of elements that players do not see: sensors of the lane, and what fills a slingshot."""
+
+
+def hidden_of(scene: Scene) -> tuple[int, ...]:
+    """The elements, by index, that pictures do not show."""
+    return tuple(i for i, e in enumerate(scene.elements) if e.name.startswith(HIDDEN))
+
+
 def word_of(name: str) -> str:
     """The word that a name begins with, or "" if it is none that the game knows."""
     return next((word for word in (*WORDS, "plunger") if name == word or name.startswith(f"{word}_")), "")

@@ -1,6 +1,7 @@
 """The rules of the game of walls: bring each ball to its target with a wall that is dragged by its ends."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from bounce_env.engine.view import ball_now, core_now
 from bounce_env.games.actions import Continuous, clipped
 from bounce_env.games.episode import (
     ALL_PLAYED,
+    FPS,
     OUT_OF_BUDGET,
     RUNNING,
     TIME_LIMIT,
@@ -199,6 +201,7 @@ class WallsGame(Game):
     Raises ValueError where the scene cannot be played (`problems_of`), SceneError where it cannot be read.
     """
 
+    counted = "targets reached"
     counters = ("points_targets", "drained", "timed_out", "crushed", "touches", "is_success")
     memory = MEMORY
 
@@ -221,6 +224,12 @@ class WallsGame(Game):
     def default_scene(self) -> str:
         """The field of the card."""
         return "walls"
+
+    def status(self, episode: Any, memory: Any) -> tuple[str, ...]:
+        """Which ball is played, and how long it still may be."""
+        left = max(BALL_FRAMES - (episode.frames - memory.born), 0)
+        words = (f"Ball {episode.ball + 1} of {self.rules.balls}", f"{math.ceil(left / FPS)} s left")
+        return (*words, *super().status(episode, memory))
 
     def for_worlds(self, worlds: int) -> tuple[Tables, Rules]:
         """Each world has its own row of every table, for its own target."""

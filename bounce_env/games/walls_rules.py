@@ -22,6 +22,7 @@ LAUNCH_SPEED = 0.5  # m/s, level: at most so much to either side
 
 WALL_SPEED = 1.0  # m/s; of each end along x and along y
 LONGEST = 4.0  # times the wall's least length
+SLACK = 1.0 + 1e-9  # by which it may be longer at first, for the rounding of both
 BALL_FRAMES = 8 * FPS  # that a ball is played
 
 REFERENCE_SPEED = 2.0  # m/s; the speed that is observed as 1
@@ -139,12 +140,13 @@ def problems_of(scene: Scene) -> Iterator[str]:
 def _problems_of_wall(scene: Scene, wall: Wall) -> Iterator[str]:
     speed = math.sqrt(2.0) * 2.0 * WALL_SPEED
     if scene.max_speed is not None and scene.max_speed < speed:
-        yield f"max_speed = {scene.max_speed!r}: must be at least {at_least(speed)}, faster than the ends of the wall"
+        least = at_least(speed, 6)
+        yield f"max_speed = {scene.max_speed!r}: must be at least {least}, faster than the ends of the wall"
     if wall.reach is None:
         yield "reach = None: the draggable wall must have one"
     length = math.dist(wall.start, wall.end)
-    if length > longest(wall):
-        least = at_least(length / LONGEST)
+    if length > SLACK * longest(wall):
+        least = at_least(length / (SLACK * LONGEST), 6)
         yield f"min_length = {wall.min_length!r}: must be at least {least}, a quarter of the wall's length"
 
 

@@ -14,10 +14,14 @@ from gymnasium import spaces
 LEFT_HAND = {"a": (-1, 0), "d": (1, 0), "s": (0, -1), "w": (0, 1), "left shift": (-1, 0), "right shift": (1, 0)}
 RIGHT_HAND = {"left": (-1, 0), "right": (1, 0), "down": (0, -1), "up": (0, 1)}
 
+NUDGES = {"z": 0, "x": 1}
+"""Keys that shove the table: to the left and to the right."""
+
 PAUSE, RESTART, FILM = "p", "r", "v"
 QUIT = ("escape", "q")
 
 MOVES, FLIPS, DRAGS = "Arrows, A D: move", "Arrows, A D, Shift: flippers", "A D W S, arrows: the two ends"
+NUDGING = f"{FLIPS}    Z X: nudge"
 
 
 @dataclass(frozen=True)
@@ -31,15 +35,22 @@ class Controls:
 def controls_for(space: spaces.Space[Any]) -> Controls:
     """The controls for an action space; actions are of that space.
 
-    Discrete(3): left, stay, right. Discrete(4): nothing, left, right, both flippers. MultiBinary(2): left and right
-    flipper. Box of 1 or 2 numbers: along x, or x and y, at full speed; of 4: the first end by A, D, W, S, the second by
-    the arrow keys. Keys of opposite ways cancel, but press both flippers. Raises ValueError for any other space.
+    Discrete(3): left, stay, right. Discrete(4): nothing, left, right, both flippers; Discrete(6): and nudges to the
+    left and right, in place of these. MultiBinary(2): left and right flipper; MultiBinary(4): and nudges. Box of 1 or 2
+    numbers: along x, or x and y, at full speed; of 4: the first end by A, D, W, S, the second by the arrow keys. Keys
+    of opposite ways cancel, but press both flippers. Raises ValueError for any other space.
     """
     match space:
         case spaces.Discrete(n=3, start=0):
             return Controls(lambda held: 1 + _way(held)[0], MOVES)
         case spaces.Discrete(n=4, start=0):
             return Controls(lambda held: int(_pressed(held) @ (1, 2)), FLIPS)
+        case spaces.Discrete(n=6, start=0):
+            return Controls(lambda held: _nudged(held) or int(_pressed(held) @ (1, 2)), NUDGING)
+        case spaces.MultiBinary(shape=(4,)):
+            return Controls(
+                lambda held: np.array([*_pressed(held), *(key in held for key in NUDGES)], np.int8), NUDGING
+            )
         case spaces.MultiBinary(shape=(2,)):
             return Controls(lambda held: _pressed(held).astype(np.int8), FLIPS)
         case spaces.Box(shape=(1,) | (2,) as shape):
@@ -47,8 +58,8 @@ def controls_for(space: spaces.Space[Any]) -> Controls:
         case spaces.Box(shape=(4,)):
             return Controls(lambda held: _full_speed(space, _sum(LEFT_HAND, held) + _sum(RIGHT_HAND, held)), DRAGS)
     raise ValueError(
-        f"action_space = {space}: must be Discrete(3), Discrete(4), MultiBinary(2) or a Box of 1, 2 or 4 numbers to be "
-        "played with keys"
+        f"action_space = {space}: must be Discrete(3), Discrete(4), MultiBinary(2) or a Box of 1, 2 or 4 numbers, or "
+        "with nudges Discrete(6) or MultiBinary(4), to be played with keys"
     )
 
 
@@ -66,6 +77,11 @@ def _pressed(held: Set[str]) -> Any:
     """Whether the left and the right flipper are pressed, 0 or 1 each."""
     ways = {way for key, (way, _) in (LEFT_HAND | RIGHT_HAND).items() if key in held}
     return np.array([-1 in ways, 1 in ways], np.int64)
+
+
+def _nudged(held: Set[str]) -> int:
+    """The action of a nudge, 4 or 5; 0 for none."""
+    return next((4 + side for key, side in NUDGES.items() if key in held), 0)
 
 
 def _full_speed(space: spaces.Box, ways: tuple[int, ...]) -> Any:

@@ -10,8 +10,10 @@ from bounce_env.render import Window
 from bounce_env.render.lazy_pygame import load_pygame
 
 
-def play(session: Session, title: str, fps: float, frames: int | None = None) -> int:
-    """Show a session in a window at `fps` frames a second, until the person quits or after `frames` frames.
+def play(
+    session: Session, title: str, fps: float, frames: int | None = None, *, episodes: int | None = None
+) -> int:  # fmt: skip
+    """Show a session in a window at `fps` frames a second, until the person quits, or after so many frames or episodes.
 
     Returns how many frames were shown. Raises `pygame.error` where no window can be opened,
     `gymnasium.error.DependencyNotInstalled` without pygame.
@@ -20,7 +22,7 @@ def play(session: Session, title: str, fps: float, frames: int | None = None) ->
     window = Window(screen.size, title, fps)
     shown = 0
     try:
-        while not (session.quits or window.closed or shown == frames):
+        while not (session.quits or window.closed or shown == frames or session.episodes == episodes):
             window.show(screen.draw(session))
             shown += 1
             _pass_on(window, session)

@@ -33,10 +33,11 @@ class Screen:
         self._pygame = load_pygame()
         self._pygame.font.init()
         self._text = max(18, height // 36)
-        self._lines = self._wrapped((session.controls, *HELP), width)
+        words = (session.controls, *HELP) if session.controls else HELP
+        self._lines = self._wrapped(words, width)
         self._row = round(1.25 * self._text)
         self._frame_height = height
-        self.size = (width, height + (len(self._lines) + 1) * self._row + self._row // 2)
+        self.size = (width, height + (len(self._lines) + 2) * self._row + self._row // 2)
         self._line = lru_cache(64)(self._rendered)
 
     def draw(self, session: Session) -> Frame:
@@ -61,8 +62,10 @@ class Screen:
             y += image.get_height()
 
     def _draw_strip(self, target: "pygame.Surface", session: Session) -> None:
-        """What the keys do, and below it the film."""
+        """How the game stands, below it what the keys do, and at the bottom the film."""
         y = self._frame_height + self._row // 4
+        target.blit(self._line(GAP.join(session.status), BRIGHT, self._text), (self._row // 2, y))
+        y += self._row
         for text in self._lines:
             target.blit(self._line(text, FAINT, self._text), (self._row // 2, y))
             y += self._row
@@ -103,4 +106,6 @@ def _headlines(session: Session) -> tuple[tuple[str, int], ...]:
     if session.end_reason is not None:
         reason = session.end_reason.replace("_", " ")
         return ("Game over", 3), (reason, 2), (f"Score {session.score:g}", 2), ("R: play again", 1)
+    if session.waits:
+        return (("Press a key", 3), ("to start", 2))
     return (("Paused", 3), ("P: go on", 1)) if session.paused else ()

@@ -8,25 +8,44 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.lab.film import Film
-from bounce_env.lab.keys import FILM, PAUSE, QUIT, RESTART, controls_for
+from bounce_env.lab.keys import FILM, PAUSE, QUIT, RESTART, Controls, controls_for
 
 Frame = npt.NDArray[np.uint8]
 
 
-class Session:
-    """Episodes of `env`, one frame a tick, steered by keys.
+SHOWN_AGAIN = 2.0
+"""Seconds for which the end of an agent's episode is shown before its next one begins."""
 
-    env: with render mode rgb_array. seed: of its stream of episodes. film: begins a film.
+
+class Session:
+    """Episodes of `env`, one frame a tick, steered by keys, or by an agent for a person who watches.
+
+    env: with render mode rgb_array. seed: of its stream of episodes. film: begins a film. agent: from an observation to
+    an action; None for a person. waits: for a key that starts the sitting.
     Raises ValueError where the action space cannot be played with keys.
 
     frame: the present picture, (height, width, 3). score: of this episode. end_reason: how it ended, None while it
-    runs. paused, quits: what the keys say. message: what became of the last film.
+    runs. waits: whether it still does. paused, quits: what the keys say. message: what became of the last film.
+    status: what there is to know beside picture and score, in a few words each. episodes: how many have ended.
     """
 
-    def __init__(self, env: gym.Env[Any, Any], seed: int, film: Callable[[], Film]) -> None:
+    def __init__(
+        self,
+        env: gym.Env[Any, Any],
+        seed: int,
+        film: Callable[[], Film],
+        agent: Callable[[Any], Any] | None = None,
+        *,
+        waits: bool = False,
+    ) -> None:
         self._env = env
-        self._controls = controls_for(env.action_space)
+        self._agent = agent
+        self._controls = Controls(lambda held: None, "") if agent else controls_for(env.action_space)
         self._new_film = film
+        self.waits = waits
+        self.episodes = 0
+        self._rests = 0
+        self._observation: Any = None
         self._film: Film | None = None
         self._held: set[str] = set()
         self.paused = self.quits = False
@@ -47,6 +66,9 @@ class Session:
     def press(self, key: str) -> None:
         """A key goes down; keys have pygame's names."""
         self._held.add(key)
+        starts, self.waits = self.waits, self.waits and key in (*QUIT, FILM)
+        if starts and not self.waits:
+            return  # whatever it means later on: now it starts the game
         if key == PAUSE and self.end_reason is None:
             self.paused = not self.paused
         elif key == RESTART:
@@ -62,12 +84,20 @@ class Session:
 
     def tick(self) -> None:
         """The next frame, unless the game is paused or over."""
-        if self.paused or self.end_reason is not None:
+        if self._agent is not None and self.end_reason is not None and not self.paused:
+            self._rests -= 1
+            if self._rests <= 0:
+                self._begin(None)
             return
-        _, _, terminated, truncated, info = self._env.step(self._controls.action(self._held))
+        if self.waits or self.paused or self.end_reason is not None:
+            return
+        action = self._controls.action(self._held) if self._agent is None else self._agent(self._observation)
+        self._observation, _, terminated, truncated, info = self._env.step(action)
         self.score = float(info["score"])
         if terminated or truncated:
             self.end_reason = str(info["end_reason"])
+            self.episodes += 1
+            self._rests = round(SHOWN_AGAIN * float(self._env.metadata["render_fps"]))
         self._show()
 
     def close(self) -> None:
@@ -76,7 +106,7 @@ class Session:
             self._toggle_film()
 
     def _begin(self, seed: int | None) -> None:
-        _, info = self._env.reset(seed=seed)
+        self._observation, info = self._env.reset(seed=seed)
         self.paused = False
         self.end_reason = None
         self.score = float(info["score"])
@@ -84,6 +114,7 @@ class Session:
 
     def _show(self) -> None:
         self.frame: Frame = np.asarray(self._env.render())
+        self.status: tuple[str, ...] = getattr(self._env.unwrapped, "status", ())
         if self._film is not None:
             self._try(lambda film: film.add(self.frame), self._film)
 

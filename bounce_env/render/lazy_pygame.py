@@ -4,13 +4,13 @@ import importlib
 import os
 from types import ModuleType
 
-from gymnasium.error import DependencyNotInstalled
+from bounce_env.extras import missing
 
 
 def load_pygame() -> ModuleType:
     """Import pygame without its banner and return it.
 
-    Raises `gymnasium.error.DependencyNotInstalled` where it is not installed.
+    Raises MissingExtraError, which is `gymnasium.error.DependencyNotInstalled`, where it is not installed.
     """
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     # SDL would take SIGTERM for a click on a window's close button, and `kill` would no longer end a program.
@@ -18,6 +18,4 @@ def load_pygame() -> ModuleType:
     try:
         return importlib.import_module("pygame")
     except ImportError as error:
-        raise DependencyNotInstalled(
-            'drawing needs pygame, which is not installed: pip install "bounce_env[render]"'
-        ) from error
+        raise missing("render", "pygame", "drawing needs") from error

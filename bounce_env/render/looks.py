@@ -1,11 +1,12 @@
 """What each element looks like: strokes and patches in pixels, at rest and lit. Data only; `painter` draws it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeAlias
 
+from bounce_env.render.outline import clipped, islands, view_box
 from bounce_env.render.projection import Projection
 from bounce_env.scene import Arc, Bumper, Element, Field, Paddle, Part, Scene, Sensor, Wall
 
@@ -57,7 +58,7 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Patch:
-    """A filled convex polygon, pixels. It replaces what lies beneath it as a `Stroke` does."""
+    """A filled polygon, pixels. It replaces what lies beneath it as a `Stroke` does."""
 
     corners: tuple[Point, ...]
     color: Color
@@ -138,7 +139,7 @@ def still_look(element: Element, scene: Scene, projection: Projection, *, lit: b
             path = _curve(element.center, element.radius, element.start_angle, element.end_angle, projection)
             return _line(path, _pen(projection), _adds_energy(element, scene), lit=lit)
         case Sensor():
-            return _dashes(element, projection, lit=lit)
+            return _dashes(element, scene, projection, lit=lit)
         case Field():
             return _wind(element, projection, lit=lit)
         case _:
@@ -178,13 +179,13 @@ def _gate(wall: Wall, lively: bool, projection: Projection, *, lit: bool) -> Loo
     pen = _pen(projection)
     length = math.dist(start, end)
     ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
-    heads = max(1, round(length / (14 * pen)))
+    heads = max(1, math.floor(length / (14 * pen)) - 1)  # none so near to an end that it meets what stands there
 
     def place(along: float, right: float) -> Point:
         return start[0] + along * ux - right * uy, start[1] + along * uy + right * ux  # y points down
 
     color = (_LIVELY_LIT if lively else _PASSIVE_LIT) if lit else (_LIVELY if lively else _PASSIVE)
-    wing = min(2.6 * pen, 0.5 * length)
+    wing = min(2.6 * pen, 0.25 * length)
     chevrons = [
         [place(middle - wing, 2.2 * pen + wing), place(middle, 2.2 * pen), place(middle + wing, 2.2 * pen + wing)]
         for middle in ((i + 0.5) * length / heads for i in range(heads))
@@ -193,12 +194,13 @@ def _gate(wall: Wall, lively: bool, projection: Projection, *, lit: bool) -> Loo
     return (*line, *(stroke for chevron in chevrons for stroke in _along(chevron, 0.6 * pen, color)))
 
 
-def _dashes(sensor: Sensor, projection: Projection, *, lit: bool) -> Look:
-    """A sensor is no obstacle: a broken line."""
+def _dashes(sensor: Sensor, scene: Scene, projection: Projection, *, lit: bool) -> Look:
+    """A sensor is no obstacle: a broken line, as far as it lies in the field."""
     color = (_DRAIN_LIT if lit else _DRAIN) if sensor.drain else (_SENSOR_LIT if lit else _SENSOR)
     pen = _pen(projection)
     if sensor.segment is not None:
-        (x0, y0), (x1, y1) = (_pixel(point, projection) for point in sensor.segment)
+        inside = clipped(sensor.segment, view_box(scene)) or sensor.segment
+        (x0, y0), (x1, y1) = (_pixel(point, projection) for point in inside)
         count = max(1, round(math.dist((x0, y0), (x1, y1)) / (10 * pen)))
         shares = [((i + 0.25) / count, (i + 0.75) / count) for i in range(count)]
         ends = [[(x0 + share * (x1 - x0), y0 + share * (y1 - y0)) for share in dash] for dash in shares]
@@ -229,6 +231,14 @@ def _wind(field: Field, projection: Projection, *, lit: bool) -> Look:
     pen = 0.6 * _pen(projection)
     shaft, head = _along((tail, tip), pen, color), _along((wings[0], tip, wings[1]), pen, color)
     return (Patch(corners, patch), *shaft, *head)
+
+
+def solid_looks(scene: Scene, projection: Projection, hidden: Collection[int]) -> Sequence[Look]:
+    """What standing walls enclose without room for a ball to start in: slingshots, posts and ledges are solid."""
+    return [
+        (Patch(tuple(_pixel(point, projection) for point in corners), _PASSIVE_CORE),)
+        for corners in islands(scene, hidden)
+    ]
 
 
 def _along(path: Sequence[Point], radius: float, color: Color) -> tuple[Stroke, ...]:

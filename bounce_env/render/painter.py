@@ -140,12 +140,13 @@ def _spots(path: Floats, freshness: Floats, spacing: float) -> tuple[Floats, Flo
 
 
 class Label:
-    """A line of text that begins at a corner, made smaller where it is wider than the room that it has."""
+    """A line of text about a middle, made smaller where it is wider than the room that it has."""
 
-    def __init__(self, left: int, top: int, room: int, size: int) -> None:
+    def __init__(self, middle: int, top: int, room: int, size: int) -> None:
         pygame.font.init()
         self._font = pygame.font.Font(None, size)
-        self._corner = (left, top)
+        self._middle = middle
+        self._top = top
         self._room = room
         self._text = ""
         self._image = pygame.Surface((0, 0))
@@ -153,7 +154,7 @@ class Label:
     def draw(self, target: pygame.Surface, text: str) -> None:
         if text != self._text:
             self._text, self._image = text, self._printed(text)
-        _stamp(target, self._image, self._corner)
+        _stamp(target, self._image, (self._middle - self._image.get_width() // 2, self._top))
 
     def _printed(self, text: str) -> pygame.Surface:
         width, height = self._font.size(text)

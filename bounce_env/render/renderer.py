@@ -1,14 +1,15 @@
 """The still scene drawn once; each frame copies it and draws what moves or was just struck."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from bounce_env.render.lazy_pygame import load_pygame
-from bounce_env.render.looks import ball_look, part_look, rail_look, still_look, target_look, trail_look
+from bounce_env.render.looks import ball_look, part_look, rail_look, solid_looks, still_look, target_look, trail_look
+from bounce_env.render.outline import view_box
 from bounce_env.render.picture import Picture
 from bounce_env.render.projection import Projection
 from bounce_env.scene import Field, Scene, Sensor
@@ -18,28 +19,37 @@ class Renderer:
     """Draws one scene at one size, without a display.
 
     scene: what to draw. width, height: of a frame in pixels; see `Projection.fit` for what is left out.
-    targets: the elements, circular sensors, that are drawn as targets, where each picture says.
+    targets: the elements, circular sensors, that are drawn as targets, where each picture says. hidden: elements that
+    are not drawn.
     Raises ValueError for a bad size, `gymnasium.error.DependencyNotInstalled` without pygame.
 
     projection: from metres to the frame's pixels, and back.
     """
 
     def __init__(
-        self, scene: Scene, width: int | None = None, height: int | None = None, *, targets: Sequence[int] = ()
+        self,
+        scene: Scene,
+        width: int | None = None,
+        height: int | None = None,
+        *,
+        targets: Sequence[int] = (),
+        hidden: Collection[int] = (),
     ) -> None:
         load_pygame()
         from bounce_env.render import painter  # noqa: PLC0415 (pygame is an extra: only who draws needs it)
 
-        self.projection = Projection.fit(scene.bounds, width, height)
+        self.projection = Projection.fit(view_box(scene), width, height)
         size = (self.projection.width, self.projection.height)
         parts = dict(scene.parts)
-        still = {i: e for i, e in enumerate(scene.elements) if i not in parts and i not in targets}
+        unseen = {*parts, *targets, *hidden}
+        still = {i: e for i, e in enumerate(scene.elements) if i not in unseen}
         rails = [look for part in parts.values() if (look := rail_look(part, self.projection))]
         beneath = sorted(still.values(), key=lambda e: not isinstance(e, Field))
         at_rest = [still_look(e, scene, self.projection, lit=False) for e in beneath]
         self._painter = painter
         self._elements = len(scene.elements)
-        self._background = painter.still_picture(*size, [*rails, *at_rest])
+        solids = solid_looks(scene, self.projection, hidden)
+        self._background = painter.still_picture(*size, [*solids, *rails, *at_rest])
         self._flashes = {i: painter.Overlay(still_look(e, scene, self.projection, lit=True)) for i, e in still.items()}
         self._parts = {
             i: tuple(
@@ -91,11 +101,12 @@ class Renderer:
 
 
 def _label_place(scene: Scene, projection: Projection, inked: npt.NDArray[np.bool_]) -> tuple[int, int, int, int]:
-    """Left, top, room to the right and text size, in pixels: at the top, inside of what bounces the ball.
+    """Middle, top, width of the room around the middle, and text size, in pixels: at the top, inside of what bounces
+    the ball.
 
-    The uppermost place, of these the leftmost, where a score of five digits covers nothing that is `inked`; the corner
-    if there is none. Sensors do not count as the inside, for a drain may be wider than the field, nor do regions of
-    acceleration.
+    The uppermost place where a score of five digits, in the middle of the field or else as near to it as it can be,
+    covers nothing that is `inked`; the field's upper edge if there is none. Sensors do not count as the inside, for a
+    drain may be wider than the field, nor do regions of acceleration.
     """
     boxes = [e.bounds for e in scene.elements if not isinstance(e, Sensor | Field)] or [scene.bounds]
     x_min, y_min, x_max, y_max = np.transpose(boxes)
@@ -104,14 +115,19 @@ def _label_place(scene: Scene, projection: Projection, inked: npt.NDArray[np.boo
     inset = max(2, round(0.025 * min(projection.width, projection.height)))
     size = max(11, round(0.075 * (bottom - top)))
     left, top, right = left + inset, top + inset // 2, right - inset
+    middle = (left + right) // 2
     width, height = round(2.3 * size), round(0.8 * size)
     for y in range(top, top + round(0.2 * (bottom - top)) - height):
         blocked = np.logical_or.reduce(inked[y : y + height, left:right], axis=0)
         free = np.convolve(blocked, np.ones(width, int), "valid") == 0 if blocked.size >= width else np.zeros(0, bool)
         if free.any():
-            x = int(free.argmax())
-            return left + x, y, int(np.append(blocked[x:], True).argmax()), size
-    return left, top, max(1, right - left), size
+            starts = np.flatnonzero(free)
+            x = int(starts[np.abs(starts + width // 2 + left - middle).argmin()]) + width // 2
+            walls = np.flatnonzero(blocked)
+            before, after = walls[walls < x], walls[walls > x]
+            reach = min(x - int(before.max(initial=-1)), int(after.min(initial=blocked.size)) - x) - 1
+            return left + x, y, 2 * reach, size
+    return middle, top, max(1, right - left), size
 
 
 def _points(name: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:

@@ -1,5 +1,7 @@
 """A window that shows finished frames: human and rgb_array rendering give the same picture."""
 
+import os
+import sys
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -9,6 +11,19 @@ from bounce_env.render.lazy_pygame import load_pygame
 
 if TYPE_CHECKING:
     import pygame
+
+
+def display_problem() -> str | None:
+    """Why no window can be seen; None where nothing is known against it.
+
+    A driver that was chosen by SDL_VIDEODRIVER is not questioned, be it one that shows nothing.
+    """
+    if os.environ.get("SDL_VIDEODRIVER"):
+        return None
+    if sys.platform.startswith(("linux", "freebsd")):
+        if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+            return "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set"
+    return None
 
 
 class Window:

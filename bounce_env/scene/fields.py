@@ -190,7 +190,14 @@ def one_of(*words: str) -> Allowed:
             raise TypeError
         return str(value)
 
-    return Allowed(f"one of {', '.join(map(repr, words))}", convert)
+    return Allowed(f"one of {', '.join(words)}", convert)
+
+
+def true_or_false(value: object) -> bool:
+    """Keep a flag, Python's or NumPy's, as bool; refuse all else."""
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError
+    return bool(value)
 
 
 def instance_of(spec: type | UnionType) -> Callable[[object], object]:

@@ -44,10 +44,10 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         if source not in builtin_scenes():
             known = ", ".join(builtin_scenes())
             hint = nearest(source, builtin_scenes())
-            raise SceneError(f"scene = {source!r}: must be one of {known}, or the path of a .toml file{hint}")
+            raise SceneError(f"scene {source!r}: must be one of {known}, or the path of a .toml file{hint}")
         return _parse((_BUILTIN / f"{source}.toml").read_bytes(), f"built-in scene {source!r}")
     if not isinstance(source, str | os.PathLike):
-        raise SceneError(f"scene = {shown(source)}: must be the name of a scene or the path of a .toml file")
+        raise SceneError(f"scene {shown(source)}: must be the name of a scene or the path of a .toml file")
     path = Path(source)
     try:
         data = path.read_bytes()

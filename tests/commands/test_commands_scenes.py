@@ -10,6 +10,7 @@ from conftest import SOAK
 
 import bounce_env.commands
 from bounce_env.commands import main
+from bounce_env.extras import install_command
 from bounce_env.scene import builtin_scenes, load_scene
 
 ROOT = Path(__file__).parents[2]
@@ -107,7 +108,7 @@ def test_bad_usage_is_told_in_a_line_and_does_nothing(words, error, tmp_path, mo
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("words", ["", "scene", "scenes", "scenes check paddle --balls many", "scenes draw paddle"])
+@pytest.mark.parametrize("words", ["", "scene", "scenes", "scenes check paddle --balls many", "scenes draw"])
 def test_words_that_are_no_command_end_with_2(words, capsys):
     with pytest.raises(SystemExit) as ended:
         main(words.split())
@@ -151,8 +152,20 @@ def test_what_is_not_installed_is_named(missing, monkeypatch, capsys):
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setattr(sys.modules["bounce_env.commands"], "__path__", bounce_env.commands.__path__)
     assert main(["scenes", "check", "paddle"]) == 2
-    error = f'error: the commands need {missing}, which is not installed: pip install "bounce_env[cli]"\n'
-    assert capsys.readouterr().err == error
+    error = f"error: the commands need {missing}, which is not installed. Install the extra 'cli': "
+    assert capsys.readouterr().err == f"{error}{install_command('cli')}\n"
+
+
+def test_draw_writes_beside_the_scene(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "tables").mkdir()
+    (tmp_path / "tables" / "attic.toml").write_bytes(EXAMPLES[0].read_bytes())
+    assert main(["scenes", "draw", "tables/attic.toml"]) == 0
+    assert main(["scenes", "draw", "pegs"]) == 0
+    assert (tmp_path / "tables" / "attic.png").is_file()
+    assert (tmp_path / "pegs.png").is_file()
+    assert main(["scenes", "draw", "tables"]) == 2
+    assert "must be one of box" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

@@ -112,7 +112,7 @@ def test_a_frame_shows_the_level_that_is_played(monkeypatch):
     levels = set()
     for seed in range(8):
         observation, info = env.reset(seed=seed)
-        expected = Renderer(env.scene, *env._frames.size).frame(replace(env.picture(), score=None))
+        expected = Renderer(env.scene, *env._frames._observed).frame(replace(env.picture(), score=None))
         assert_same(observation, expected)
         levels.add(info["level"])
     assert len(levels) > 4

@@ -140,9 +140,6 @@ def test_options_go_to_the_next_reset_only():
     assert not np.array_equal(envs.reset()[:, 2:4], [[0.25, -0.25]] * 2)
     envs.set_options([{"velocity": (0.5, 1.0)}, {"velocity": (1.0, -1.0)}])
     np.testing.assert_array_equal(envs.reset()[:, 2:4], [[0.25, 0.5], [0.5, -0.5]])
-    envs.set_options([{"velocity": (0.5, 1.0)}, {}])
-    with pytest.raises(ValueError, match="options: must have the same names in every world"):
-        envs.reset()
     envs.set_options({"level": 3})
     with pytest.raises(ValueError, match="level"):
         envs.reset()
@@ -161,17 +158,66 @@ def test_attributes_are_those_of_one_world():
     assert envs.get_attr("action_space", 1) == [single.action_space]
     assert envs.has_attr("num_envs")
     assert not envs.has_attr("compute_reward")
-    with pytest.raises(NotImplementedError, match="keyword arguments"):
-        envs.set_attr("frame_skip", 4)
+    for attribute in ("frame_skip", "render_mode", "reset"):
+        with pytest.raises(NotImplementedError, match=f"{attribute} cannot be set: pass keyword arguments"):
+            envs.set_attr(attribute, 4)
+    with pytest.raises(AttributeError, match=r"no 'scen' \(did you mean 'scene'\?\)"):
+        envs.get_attr("scen")
+    envs.set_attr("stage", 2, indices=[0, 2])
+    assert envs.get_attr("stage", [0, 2]) == [2, 2]
+    with pytest.raises(AttributeError):
+        envs.get_attr("stage", 1)
 
 
-def test_methods_are_called_once_and_answered_per_index():
+def test_methods_act_on_the_worlds_of_their_indices_alone():
     envs = BounceVecEnv(PADDLE, 3, seed=1, render_mode="rgb_array", height=60)
     envs.reset()
     frames = envs.env_method("render")
-    assert len(frames) == 3
-    assert len(envs.env_method("render", indices=[1])) == 1
-    assert len(frames[0]) == 3
+    assert_same(frames, envs.get_images())
+    assert_same(envs.env_method("render", indices=[1]), frames[1:2])
+    states = envs.env_method("clone_state")
+    observations = [envs.step(np.ones((3, 1)))[0] for _ in range(3)][-1]
+    restored = envs.env_method("restore_state", states[2], indices=2)[0]
+    assert not np.array_equal(restored, observations[2])
+    after, *_ = envs.step(np.zeros((3, 1)))
+    assert not np.array_equal(after[2], after[1])
+    with pytest.raises(NotImplementedError, match="one world cannot be stepped alone"):
+        envs.env_method("step", [0.0], indices=0)
+
+
+def test_a_reset_of_one_world_begins_its_statistics_anew():
+    envs = BounceVecEnv("Bounce/Walls-v0", 2, seed=0, time_limit=1.0)
+    envs.reset()
+    for _ in range(5):
+        envs.step(np.zeros((2, 4)))
+    observation, info = envs.env_method("reset", indices=[1], seed=4)[0]
+    assert_same(observation, gym.make("Bounce/Walls-v0").reset(seed=4)[0])
+    assert info == {"score": 0.0, "ball": 0}
+    lengths = {}
+    for _ in range(31):
+        _, _, dones, infos = envs.step(np.zeros((2, 4)))
+        lengths |= {w: infos[w]["episode"]["l"] for w in np.flatnonzero(dones).tolist() if w not in lengths}
+    assert lengths == {0: 30, 1: 30}
+
+
+def test_worlds_may_have_other_options_and_snapshots():
+    envs, other = (BounceVecEnv(PADDLE, 3, seed=2) for _ in range(2))
+    plain = other.reset()
+    envs.set_options([{"position": (0.5, 0.6)}, {}, {"position": (0.4, 0.6), "velocity": (0.0, 1.0)}])
+    observations = envs.reset()
+    assert_same(observations[1], plain[1])
+    np.testing.assert_allclose(observations[[0, 2], 0], [0.0, -0.2], atol=1e-6)
+    states = envs.env_method("clone_state")
+    for _ in range(3):
+        envs.step(np.zeros((3, 1)))
+    envs.set_options([{"snapshot": state} for state in states])
+    assert_same(envs.reset(), observations)
+
+
+def test_what_is_no_environment_of_ours_is_refused():
+    for env_id in ("CartPole-v1", "Pendulum-v1"):
+        with pytest.raises(ValueError, match=f"env_id = '{env_id}': must be an environment of bounce_env"):
+            BounceVecEnv(env_id, 2)
 
 
 def test_monitored_and_in_no_other_wrapper():

@@ -62,7 +62,7 @@ except DependencyNotInstalled as error:
 """
     )
     assert (done.returncode, done.stderr) == (0, "")
-    assert 'pip install "bounce_env[render]"' in done.stdout
+    assert "-m pip install" in done.stdout
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGTERM")

@@ -330,7 +330,7 @@ def test_an_unknown_name_lists_the_built_in_scenes(name):
     with pytest.raises(SceneError) as caught:
         load_scene(name)
     known = "box, guides, paddle, paddle_levels, pegs, pinball, walls"
-    assert str(caught.value).startswith(f"scene = {name!r}: must be one of {known}, or the path of a .toml file")
+    assert str(caught.value).startswith(f"scene {name!r}: must be one of {known}, or the path of a .toml file")
 
 
 @pytest.mark.parametrize("data", [None, 3, [], "paddle"])

@@ -37,8 +37,8 @@ class PaddleEnv(BounceEnv):
     rails. Of one on a rail there are eight numbers: x, y now, velocity x, y in units of 0.4 m/s, and x, y of both ends
     of its rail. The built-in levels have 14 in all: three bumpers of two, one of eight.
 
-    With `obs="pixels"` it is the frame that `render` gives, but for the score: uint8 (height, width, 3), 84 x 84 where
-    no size is given. One frame does not tell how fast the ball is: stack some, or ask for a `trail`.
+    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), 84 x 84
+    where no size is given. One frame does not tell how fast the ball is: stack some, or ask for a `trail`.
 
     Levels: with `num_levels` each episode is played on one of so many levels, from `start_level` on, which its seed
     chooses; 0 stands for all of the 2^31. A level is a number from which follows where its bumpers are: anywhere in the
@@ -61,14 +61,14 @@ class PaddleEnv(BounceEnv):
     `end_reason`, `points_bumpers`, `bounces`, `touches` (hits of the paddle), `speed_capped` (bounces at the limit) and
     `game_seconds`.
 
-    Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; None: "paddle", or with levels
-    "paddle_levels"), `num_levels` (None: no levels), `start_level` (0), `action` ("continuous"), `reward` ("score"),
-    `gamma` (0.99, of the dense reward), `frame_skip` (2, in units of 1/60 s), `repeat_action_probability` (0.0, per
-    1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array",
-    "human"), `width`, `height` (of a frame in pixels), `trail` (0.0; seconds of the ball's way, bounces included, that
-    a frame shows, fading), `show_bounces` (False; whether `render` shows, after a step with bounces, the last of them
-    in place of the step's end). A vector env also takes `num_envs`, `num_threads` (1), `autoreset_mode` (NEXT_STEP),
-    `copy` (True).
+    Keyword arguments: `scene` (a built-in name, the path of a TOML file, a Scene, or a dict of one; None: "paddle", or
+    with levels "paddle_levels"), `num_levels` (None: no levels), `start_level` (0), `action` ("continuous"), `reward`
+    ("score"), `gamma` (0.99, of the dense reward), `frame_skip` (2, in units of 1/60 s), `repeat_action_probability`
+    (0.0, per 1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None,
+    "rgb_array", "human"), `width`, `height` (of a rendered frame, pixels), `obs_width`, `obs_height` (of an observed
+    one), `trail` (0.0; seconds of the ball's way, bounces included, that a frame shows, fading), `show_bounces` (False;
+    whether `render` shows, after a step with bounces, the last of them in place of the step's end). A vector env also
+    takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
 
     Versions: v0, first release.
     """
@@ -129,9 +129,9 @@ class PinballEnv(BounceEnv):
     | tilt meter over 3, 1: tilted; time until the next nudge over 0.25 s; only with `nudge` | [0, 1] |
     | each button that is in force, only where actions are sticky | {0, 1} |
 
-    With `obs="pixels"` it is the frame that `render` gives, but for the score: uint8 (height, width, 3), 84 x 84 where
-    no size is given. One frame does not tell how fast the ball is (stack some, or ask for a `trail`), and none tells
-    what only clocks and counters know: balls left, ball save, hold timer, multiplier, cooldowns, tilt.
+    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), 84 x 84
+    where no size is given. One frame does not tell how fast the ball is (stack some, or ask for a `trail`), and none
+    tells what only clocks and counters know: balls left, ball save, hold timer, multiplier, cooldowns, tilt.
 
     Reward: points / 1000, and -2 for every ball that is lost ("dense"). With `reward="score"` points / 1000 alone.
 
@@ -150,13 +150,14 @@ class PinballEnv(BounceEnv):
     `stuck_freed`, `hold_released`, `nudges`, `tilts`, `bounces`, `speed_capped` (bounces at the speed limit) and
     `game_seconds`.
 
-    Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; "pinball", whose file says what a
-    table must have), `action` ("discrete"), `reward` ("dense"), `nudge` (False), `balls` (3), `frame_skip` (2, in units
-    of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state",
-    "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a frame in pixels), `trail` (0.0;
-    seconds of the ball's way, bounces included, that a frame shows, fading), `show_bounces` (False; whether `render`
-    shows, after a step with bounces, the last of them in place of the step's end). A vector env also takes `num_envs`,
-    `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
+    Keyword arguments: `scene` (a built-in name, the path of a TOML file, a Scene, or a dict of one; "pinball", whose
+    file says what a table must have), `action` ("discrete"), `reward` ("dense"), `nudge` (False), `balls` (3),
+    `frame_skip` (2, in units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (120.0 s, None for
+    none), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a rendered
+    frame, pixels), `obs_width`, `obs_height` (of an observed one), `trail` (0.0; seconds of the ball's way, bounces
+    included, that a frame shows, fading), `show_bounces` (False; whether `render` shows, after a step with bounces, the
+    last of them in place of the step's end). A vector env also takes `num_envs`, `max_episode_steps`, `num_threads`
+    (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
 
     Versions: v0, first release.
     """
@@ -191,8 +192,8 @@ class WallsEnv(BounceEnv):
     | 11 | balls left, this one included, over `balls` | [0, 1] |
     | 12 to 15 | the action in force, only where actions are sticky | [-1, 1] |
 
-    With `obs="pixels"` it is the frame that `render` gives, but for the score: uint8 (height, width, 3), 84 x 84 where
-    no size is given. One frame does not tell how fast the ball is: stack some, or ask for a `trail`.
+    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), 84 x 84
+    where no size is given. One frame does not tell how fast the ball is: stack some, or ask for a `trail`.
 
     Reward: 1 for each target ("sparse"). With `reward="dense"` besides, in every step, gamma Phi(s') - Phi(s), where
     Phi = -(distance from the ball to its target) / (diagonal of the field), and 0 when the last ball has been played:
@@ -216,13 +217,13 @@ class WallsEnv(BounceEnv):
     `drained`, `crushed`, `timed_out` (how many balls ended so), `touches` (hits of the player's wall), `bounces`,
     `speed_capped` (bounces at the speed limit) and `game_seconds`.
 
-    Keyword arguments: `scene` (a built-in name, the path of a TOML file, or a Scene; "walls", whose file says what one
-    must have), `reward` ("sparse"), `gamma` (0.99, of the dense reward), `balls` (5), `frame_skip` (2, in units of
-    1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (90.0 s, None for none; the balls' 8 s end an
-    episode sooner), `obs` ("state"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a frame in
-    pixels), `trail` (0.0, seconds of the ball's way that frames show), `show_bounces` (False: a frame shows the end of
-    a step; True: the last bounce in it). A vector env also takes `num_envs`, `num_threads` (1), `autoreset_mode`
-    (NEXT_STEP), `copy` (True).
+    Keyword arguments: `scene` (a built-in name, the path of a TOML file, a Scene, or a dict of one; "walls", whose file
+    says what one must have), `reward` ("sparse"), `gamma` (0.99, of the dense reward), `balls` (5), `frame_skip` (2, in
+    units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (90.0 s, None for none; the balls' 8 s
+    end an episode sooner), `obs` ("state"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a
+    rendered frame, pixels), `obs_width`, `obs_height` (of an observed one), `trail` (0.0, seconds of the ball's way
+    that frames show), `show_bounces` (False: a frame shows the end of a step; True: the last bounce in it). A vector
+    env also takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
 
     Versions: v0, first release.
     """

@@ -1,17 +1,23 @@
-# The two commands: `make train` and `make test`. They need Python >= 3.11, make and pip, nothing else.
+# The commands of the README. They need Python >= 3.11, make and pip, nothing else.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
+FAST := tests/scene tests/render tests/survey/test_crossings.py tests/test_wording.py tests/test_extras.py \
+	tests/engine/test_impact.py tests/engine/test_law.py tests/reference/test_tutorial.py
 
-.PHONY: train test results soak lint clean
+.PHONY: train test check results soak dist lint clean
 
 train: $(VENV)/train
 	$(BIN)/python -m agents.train
 
 # All agents and baselines on all games: at most an hour on 2 cores. What it has finished it does not do again.
 results: $(VENV)/train
-	$(BIN)/python -m agents.study
+	$(BIN)/python -m agents.study --agents bounce_env/trained
+
+# For every edit: under two minutes, nothing is compiled.
+check: lint
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n 2 --dist loadfile $(FAST)
 
 test: lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile
@@ -20,17 +26,21 @@ test: lint
 soak: $(VENV)/dev
 	BOUNCE_SOAK=1 $(BIN)/python -m pytest -rP -n 2 --dist loadfile
 
+# Wheel and sdist, tried out in a fresh environment of each Python that is there.
+dist: $(VENV)/dist
+	$(BIN)/python .ci/dist.py
+
 lint: $(VENV)/dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-$(VENV)/train $(VENV)/dev: pyproject.toml constraints.txt
+$(VENV)/train $(VENV)/dev $(VENV)/dist: pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@echo "Installing bounce_env[$(@F)] into $(VENV): some minutes the first time ..."
 	$(INSTALL) ".[$(@F)]"
 	@touch $@
 
 clean:
-	rm -rf $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         builtin_scenes,
         load_scene,
     )
+    from bounce_env.trained import load_agent
 
 _SCENE = (
     "Arc",
@@ -40,7 +41,11 @@ _SCENE = (
     "builtin_scenes",
     "load_scene",
 )
-_HOME = {"World": "bounce_env.engine.world", **dict.fromkeys(_SCENE, "bounce_env.scene")}
+_HOME = {
+    "World": "bounce_env.engine.world",
+    "load_agent": "bounce_env.trained",
+    **dict.fromkeys(_SCENE, "bounce_env.scene"),
+}
 
 __all__ = [
     "Arc",
@@ -54,12 +59,18 @@ __all__ = [
     "Sensor",
     "Wall",
     "World",
+    "__version__",
     "builtin_scenes",
+    "load_agent",
     "load_scene",
 ]
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from bounce_env.extras import version  # noqa: PLC0415
+
+        return version()
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_HOME[name]), name)

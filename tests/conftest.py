@@ -2,6 +2,7 @@
 
 import os
 
+import pytest
 from hypothesis import settings
 
 SOAK = os.environ.get("BOUNCE_SOAK") == "1"
@@ -15,3 +16,12 @@ settings.load_profile("soak" if SOAK else "sample")
 def soak_count(sample: int, full: int) -> int:
     """`sample` under `make test`, `full` under `make soak` (BOUNCE_SOAK=1)."""
     return full if SOAK else sample
+
+
+def require(name: str, there: bool, what: str) -> None:
+    """Skip a test that needs more than Python, make and pip; where BOUNCE_REQUIRE names it (CI), fail instead."""
+    if there:
+        return
+    if name in os.environ.get("BOUNCE_REQUIRE", "").split(","):
+        pytest.fail(f"BOUNCE_REQUIRE names {name!r}, but there is no {what}")
+    pytest.skip(f"needs {what} ({name})")

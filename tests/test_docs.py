@@ -1,0 +1,83 @@
+"""What the documents say is so: the table of info keys, the version, and the files that they name."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import gymnasium as gym
+import pytest
+import yaml
+
+import bounce_env
+from bounce_env.cards import PaddleEnv, PinballEnv, WallsEnv
+from bounce_env.extras import version
+
+ROOT = Path(bounce_env.__file__).parent.parent
+PADDLE, PINBALL, WALLS = "Bounce/Paddle-v0", "Bounce/Pinball-v0", "Bounce/Walls-v0"
+CARDS = {PADDLE: PaddleEnv, PINBALL: PinballEnv, WALLS: WallsEnv}
+
+
+def info_table():
+    """By key: when, games, type."""
+    rows = re.findall(r"^\| `(\w+)` \| ([^|]+) \| ([^|]+) \| ([^|]+) \|", (ROOT / "docs/info.md").read_text(), re.M)
+    return {key: (when, games, kind) for key, when, games, kind in rows}
+
+
+def names(games: str, env_id: str, levels: bool) -> bool:
+    """Whether a cell of the table is about a game."""
+    short = env_id.removeprefix("Bounce/").removesuffix("-v0")
+    if "num_levels" in games:
+        return levels and short in games
+    return games == "all" or short in games.split(", ")
+
+
+@pytest.mark.parametrize(("env_id", "kwargs"), [(PADDLE, {}), (PADDLE, {"num_levels": 3}), (PINBALL, {}), (WALLS, {})])
+def test_info_holds_what_the_table_says_no_more_and_no_less(env_id, kwargs):
+    table = info_table()
+    mine = {key: (when, kind) for key, (when, games, kind) in table.items() if names(games, env_id, bool(kwargs))}
+    each = {key for key, (when, _) in mine.items() if when == "each step"}
+    env = gym.make(env_id, time_limit=4.0, **kwargs)
+    _, info = env.reset(seed=0)
+    assert set(info) == each
+    over = False
+    while not over:
+        *_, terminated, truncated, info = env.step(env.action_space.sample() * 0)
+        over = terminated or truncated
+        assert set(info) == (set(mine) if over else each)
+    kinds = {"float": float, "int": int, "str": str, "bool": bool}
+    for key, (_, kind) in mine.items():
+        assert type(info[key]) is kinds[kind]
+        assert f"`{key}`" in CARDS[env_id].__doc__
+
+
+def test_versions_agree():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert project["version"] == citation["version"] == version() == bounce_env.__version__
+
+
+def test_readme_has_every_extra_that_users_need():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    readme = (ROOT / "README.md").read_text()
+    for extra in project["optional-dependencies"]:
+        if extra != "dist":
+            assert f"| `{extra}` |" in readme
+
+
+@pytest.mark.parametrize("document", ["README.md", "docs/info.md", "docs/releasing.md", "SECURITY.md"])
+def test_files_that_are_linked_or_named_are_there(document):
+    text = (ROOT / document).read_text()
+    named = re.findall(r"\]\(((?!http)[^)#]+)\)", text) + re.findall(
+        r"`((?:tests|docs|configs|bounce_env|\.github)/[\w./-]+)`", text
+    )
+    assert document != "README.md" or len(named) > 3
+    for path in named:
+        assert (ROOT / path).exists(), path
+
+
+@pytest.mark.parametrize("workflow", sorted((ROOT / ".github" / "workflows").glob("*.yml")), ids=lambda path: path.name)
+def test_workflows_are_yaml_with_all_pythons_and_systems(workflow):
+    jobs = yaml.safe_load(workflow.read_text())["jobs"]
+    for job in jobs.values():
+        assert job["strategy"]["matrix"]["python"] == ["3.11", "3.12", "3.13", "3.14"]
+        assert len(job["strategy"]["matrix"]["os"]) == 3

@@ -14,7 +14,7 @@ from bounce_env.frames import ViewOptions
 from bounce_env.games.batch import Batch
 from bounce_env.games.game import Game
 from bounce_env.games.options import Options
-from bounce_env.scene import builtin_scenes, scene_to_dict
+from bounce_env.scene import SceneError, builtin_scenes, scene_to_dict
 from bounce_env.wording import shown, unknown_name
 
 
@@ -62,7 +62,14 @@ class HasKeywords:
         view_names = {field.name for field in fields(ViewOptions)}
         view = ViewOptions(**{name: value for name, value in keywords.items() if name in view_names})
         rest = {name: value for name, value in keywords.items() if name not in {*own, *view_names}}
-        return cls.game_type(cls.options_type(**rest)), view, own
+        options = cls.options_type(**rest)
+        try:
+            return cls.game_type(options), view, own
+        except SceneError:
+            raise
+        except ValueError as error:  # a scene that cannot be played, which the game does not know by its name
+            named = "" if options.scene is None else f" (scene = {shown(options.scene)})"
+            raise ValueError(f"{error}{named}") from None
 
     @property
     def spec(self) -> EnvSpec | None:

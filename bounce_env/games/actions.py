@@ -39,8 +39,11 @@ class Continuous:
             raise ValueError(f"actions of shape {actions.shape}: must be {what}")
         if actions.dtype.kind not in "fiu":
             raise ValueError(f"actions = {shown(actions)}: must be numbers")
-        # A kernel is compiled for arrays of one kind.
-        return np.require(actions.reshape(worlds, self.size), np.float64, ("C", "W"))
+        rows = actions.reshape(worlds, self.size)
+        # A kernel is compiled for arrays of one kind: those that are in order and may be written.
+        if rows.dtype == np.float64 and rows.flags.carray:
+            return rows.view(np.float64)
+        return np.array(rows, np.float64, order="C")
 
 
 @dataclass(frozen=True)

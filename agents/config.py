@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from agents.command import Refused
 from bounce_env.scene.fields import Allowed
-from bounce_env.wording import nearest
+from bounce_env.wording import nearest, shown
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -147,4 +147,6 @@ def _explained(model: type[BaseModel], details: Mapping[str, Any]) -> str:
         message = "must be a mapping"
     elif kind == "literal_error":
         message = f"must be {details['ctx']['expected']}"
-    return f"{key} = {details['input']!r}: {message}" if key else message
+    elif kind == "string_type":
+        message = "must be text"
+    return f"{key} = {shown(details['input'])}: {message}" if key else message

@@ -10,6 +10,7 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
+from conftest import require
 from gymnasium.error import DependencyNotInstalled
 
 import bounce_env
@@ -76,11 +77,8 @@ def test_from_a_folder_on_the_path_alone_it_is_that_folder(monkeypatch):
 
 def test_the_command_in_the_error_does_what_it_says(tmp_path):
     """As far as pip resolves it: from the folder that the package was installed from."""
-    command = install_command("render").replace(" install ", " install --dry-run --no-deps --no-build-isolation -q ")
-    pip = subprocess.run([sys.executable, "-m", "pip", "--version"], check=False, capture_output=True)
-    if pip.returncode or os.name == "nt":
-        pytest.skip("needs pip and a POSIX shell")
-    command = command.replace("--no-build-isolation ", "")
+    command = install_command("render").replace(" install ", " install --dry-run --no-deps -q ")
+    require("shell", os.name == "posix", "POSIX shell")
     done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
@@ -123,3 +121,13 @@ def test_the_console_script_is_there():
         script = Path(shutil.which("bounce-env") or "")
     done = subprocess.run([str(script), "--version"], capture_output=True, text=True, check=True)
     assert done.stdout == f"bounce_env {version()}\n"
+
+
+def test_what_ci_requires_is_not_skipped(monkeypatch):
+    require("browser", True, "browser")
+    monkeypatch.delenv("BOUNCE_REQUIRE", raising=False)
+    with pytest.raises(pytest.skip.Exception, match=r"needs Chromium \(browser\)"):
+        require("browser", False, "Chromium")
+    monkeypatch.setenv("BOUNCE_REQUIRE", "clients,browser")
+    with pytest.raises(pytest.fail.Exception, match="BOUNCE_REQUIRE names 'browser', but there is no Chromium"):
+        require("browser", False, "Chromium")

@@ -45,14 +45,18 @@ INLINED = {
 
 @functools.cache
 def sources_hash(folder: Path) -> str:
-    """SHA-256 over every source file that can end up in a kernel of `folder`, by name and content.
+    """SHA-256 over every source file that can end up in a kernel of `folder`, by place and content.
 
-    These are the engine's, and where the kernel is not the engine's those beside it.
+    These are the engine's, and where the kernel is not the engine's those of its part of the package, or beside it;
+    subfolders included.
     """
+    engine = Path(__file__).resolve().parent
+    package = engine.parent
+    own = package / folder.relative_to(package).parts[0] if package in folder.parents else folder
     digest = hashlib.sha256()
-    for place in sorted({Path(__file__).resolve().parent, folder}):
-        for path in sorted(place.glob("*.py")):
-            digest.update(path.name.encode())
+    for place in sorted({engine, own}):
+        for path in sorted(place.rglob("*.py")):
+            digest.update(path.relative_to(place.parent).as_posix().encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
 

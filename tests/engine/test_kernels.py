@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import re
 import shutil
 import subprocess
 import sys
@@ -51,6 +52,32 @@ def test_second_process_compiles_nothing_and_an_edited_helper_is_noticed(tmp_pat
         # What follows the version names a class that there is no longer, as after an upgrade in place.
         index.write_bytes(pickle.dumps(version) + b"cbounce_env.engine.jit\nGone\n.")
     assert run_in(tmp_path) == ["0", "1", "0.5"]
+
+
+def test_an_edit_in_a_subfolder_is_noticed(tmp_path: Path) -> None:
+    """Of the engine's, three modules away from the kernel and a folder deeper."""
+    shutil.copytree(PACKAGE, tmp_path / "bounce_env", ignore=shutil.ignore_patterns("__pycache__"))
+    engine = tmp_path / "bounce_env" / "engine"
+    (engine / "deep").mkdir()
+    (engine / "deep" / "__init__.py").write_text("")
+    law = engine / "deep" / "law.py"
+    (engine / "law.py").rename(law)
+    names = ", ".join(re.findall(r"^def (\w+)", law.read_text(), re.MULTILINE))
+    (engine / "law.py").write_text(f"from bounce_env.engine.deep.law import {names}\n")
+    assert run_in(tmp_path) == ["0", "1", "1.0"]
+    assert run_in(tmp_path) == ["1", "0", "1.0"]
+    law.write_text(law.read_text().replace("uy + (rebound * ny", "uy + (0.5 * rebound * ny"))
+    assert run_in(tmp_path) == ["0", "1", "0.5"]
+
+
+def test_an_edit_elsewhere_compiles_nothing_anew(tmp_path: Path) -> None:
+    """What no kernel is made of: of a game for the engine's kernels, of a card for any."""
+    shutil.copytree(PACKAGE, tmp_path / "bounce_env", ignore=shutil.ignore_patterns("__pycache__"))
+    assert run_in(tmp_path) == ["0", "1", "1.0"]
+    for name in ("games/paddle.py", "cards.py"):
+        with (tmp_path / "bounce_env" / name).open("a") as file:
+            file.write("# edited\n")
+    assert run_in(tmp_path) == ["1", "0", "1.0"]
 
 
 def test_scenes_of_one_feature_set_share_a_kernel() -> None:

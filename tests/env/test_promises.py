@@ -9,6 +9,7 @@ import threading
 import gymnasium as gym
 import numpy as np
 import pytest
+from conftest import require
 from gymnasium.wrappers import TimeAwareObservation, TimeLimit
 from rollouts import MODES, PADDLE, PINBALL, WALLS, assert_same, make_vec, scripted
 from stable_baselines3.common.monitor import Monitor
@@ -96,6 +97,7 @@ def test_what_was_handed_out_may_be_written_to_without_harm(mode):
 
 
 def test_a_forked_child_steps_with_threads_of_its_own():
+    require("fork", hasattr(os, "fork"), "os.fork")
     envs = make_vec(8, num_threads=2)
     envs.reset(seed=0)
     envs.step(np.zeros((8, 1)))

@@ -139,7 +139,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         if ended:
             self._tell_ends(info, over, finals)
         if self._mode == AutoresetMode.DISABLED:
-            self._ended = over.copy()  # the caller is handed the other one
+            self._ended = over
         return self._observations(), rewards, terminated, truncated, info
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:

@@ -126,7 +126,7 @@ def resumed(options: TrainOptions) -> Run:
 
 def compile_kernels(task: Task) -> None:
     """Play one step, so that what has to be compiled is compiled before the training's clock runs."""
-    say("compiling the physics kernels: about 30 s the first time, then they are read from disk ...")
+    say("compiling the physics kernels: a minute or so the first time, then they are read from disk ...")
     began = time.monotonic()
     envs = task.batch(1)
     envs.reset(seed=0)

@@ -20,6 +20,8 @@ from bounce_env.games.start import checked_options, start_rows
 from bounce_env.keywords import HasKeywords
 from bounce_env.one_world import plain
 from bounce_env.render import Picture, Window
+from bounce_env.render.lazy_pygame import load_pygame
+from bounce_env.render.window import display_problem
 from bounce_env.scene import Scene
 from bounce_env.wording import nearest, shown, whole
 
@@ -104,6 +106,8 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         game, view, own = self.sorted_out(keywords)
         self.render_mode: str | None = checked_render_mode(own["render_mode"], self.metadata["render_modes"])
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds)}
+        if self.render_mode is not None or view.obs == "pixels":
+            load_pygame()  # where it is missing, now and not after an episode
         self._batch = Batch(game, 1, autoreset=DISABLED)
         self._frames = Frames(self._batch, view)
         self.observation_space: spaces.Space[Any] = self._frames.space
@@ -171,6 +175,9 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         if self.render_mode == "rgb_array":
             return frame
         if self._window is None:
+            problem = display_problem()
+            if problem is not None:
+                gym.logger.warn(f'render_mode "human" shows nothing: {problem}')
             title = self.spec.id if self.spec else type(self).__name__
             self._window = Window(self._frames.size, title, self.metadata["render_fps"])
         self._window.show(frame)

@@ -12,6 +12,10 @@ from urllib.request import url2pathname
 
 from gymnasium.error import DependencyNotInstalled
 
+CPU_TORCH = "https://download.pytorch.org/whl/cpu"
+WITH_TORCH = ("sb3", "train", "test", "dev")
+"""Extras that install PyTorch."""
+
 
 class MissingExtraError(DependencyNotInstalled, ImportError):
     """An extra of the package that is not installed: Gymnasium's error for it, and an ImportError."""
@@ -19,9 +23,15 @@ class MissingExtraError(DependencyNotInstalled, ImportError):
 
 def missing(extra: str, module: str, needs: str) -> MissingExtraError:
     """The error that says what needs an extra ("drawing needs"), what of it is missing, and how it is installed."""
+    small = f" (without a GPU first: {cpu_torch_command()})" if extra in WITH_TORCH else ""
     return MissingExtraError(
-        f"{needs} {module}, which is not installed. Install the extra {extra!r}: {install_command(extra)}"
+        f"{needs} {module}, which is not installed. Install the extra {extra!r}: {install_command(extra)}{small}"
     )
+
+
+def cpu_torch_command() -> str:
+    """A line for a shell that installs PyTorch's build for the CPU, which is a tenth of the one for GPUs."""
+    return f"{_quoted(sys.executable or 'python')} -m pip install torch --index-url {CPU_TORCH}"
 
 
 def install_command(extra: str) -> str:

@@ -22,6 +22,7 @@ from bounce_env.games.start import checked_options, start_rows
 from bounce_env.keywords import HasKeywords
 from bounce_env.one_world import OneWorld
 from bounce_env.render import Picture
+from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.scene import Scene
 from bounce_env.wording import shown, whole
 
@@ -73,6 +74,8 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         steps = _steps(own["max_episode_steps"])
         game, view, _ = self.sorted_out(keywords)
         self.metadata = {**self.metadata, "render_fps": round(1.0 / game.step_seconds), "autoreset_mode": mode}
+        if self.render_mode is not None or view.obs == "pixels":
+            load_pygame()  # where it is missing, now and not after an episode
         # A frame of an episode's end is drawn before the world is reset: not by the kernel then, but after that.
         self._resets_late = view.obs == "pixels" and mode == AutoresetMode.SAME_STEP
         autoreset = episode.DISABLED if self._resets_late else _AUTORESET[mode]

@@ -131,3 +131,37 @@ def test_what_ci_requires_is_not_skipped(monkeypatch):
     monkeypatch.setenv("BOUNCE_REQUIRE", "clients,browser")
     with pytest.raises(pytest.fail.Exception, match="BOUNCE_REQUIRE names 'browser', but there is no Chromium"):
         require("browser", False, "Chromium")
+
+
+@pytest.mark.parametrize("keywords", ["render_mode='rgb_array'", "obs='pixels'"])
+@pytest.mark.parametrize("vector", [False, True])
+def test_what_draws_names_its_extra_when_it_is_made(keywords, vector):
+    """Not after an episode, when the first picture is asked for."""
+    make = f"gym.make_vec('Bounce/Paddle-v0', 2, {keywords})" if vector else f"gym.make('Bounce/Paddle-v0', {keywords})"
+    code = f"import sys; sys.modules['pygame'] = None\nimport gymnasium as gym, bounce_env\n{make}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "MissingExtraError: drawing needs pygame" in done.stderr
+
+
+def test_pytorch_for_the_cpu_is_named_where_it_is_needed():
+    assert "https://download.pytorch.org/whl/cpu" in str(missing("sb3", "torch", "BounceVecEnv needs"))
+    assert "torch" not in str(missing("render", "pygame", "drawing needs"))
+
+
+def test_the_cards_are_there_without_an_import_of_their_own():
+    code = "import bounce_env; print(bounce_env.cards.PaddleEnv.__name__)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "PaddleEnv\n"
+
+
+def test_a_window_that_nobody_can_see_is_said(monkeypatch):
+    import gymnasium as gym
+
+    from bounce_env import env as module
+
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setattr(module, "display_problem", lambda: "there is no display")
+    env = gym.make("Bounce/Paddle-v0", render_mode="human", disable_env_checker=True)
+    with pytest.warns(UserWarning, match='render_mode "human" shows nothing: there is no display'):
+        env.reset(seed=0)
+    env.close()

@@ -7,7 +7,7 @@ import gymnasium as gym
 
 from bounce_env.commands import games
 from bounce_env.commands.options import Watch
-from bounce_env.commands.words import FINE, Refused, check_range, say
+from bounce_env.commands.words import FINE, Refused, check_range, counted, say
 from bounce_env.lab.film import Film
 from bounce_env.lab.play import play, prepare
 from bounce_env.lab.session import Session
@@ -62,6 +62,7 @@ def _film(env: gym.Env[Any, Any], agent: Agent, options: Watch, fps: float) -> i
     assert options.film is not None
     observation, info = env.reset(seed=options.seed)
     frame: Any = env.render()
+    say(f"filming {counted(options.episodes or 1, 'episode')} ...")
     film = Film(options.film, (frame.shape[1], frame.shape[0]), fps)
     film.add(frame)
     for episode in range(options.episodes or 1):

@@ -88,8 +88,8 @@ def evaluate(options: EvaluateOptions) -> int:
     A model file can run code when it is loaded: evaluate only runs that you trust.
     """
     check_range("episodes", options.episodes, 2, MOST_EPISODES)
-    if options.json is not None and not options.json.parent.is_dir():
-        raise Refused(f"--json {options.json}: there is no folder {options.json.parent}")
+    if options.json is not None and (options.json.is_dir() or not options.json.parent.is_dir()):
+        raise Refused(f"--json {options.json}: must be a file in a folder that is there")
     task, players = named(options.player, options.env_id, options.env_kwargs)
     played = {name: play(task, player, options.episodes) for name, player in players.items()}
     say(in_words(task, played))

@@ -10,8 +10,8 @@ from gymnasium import spaces
 from torch import nn
 
 from agents.algorithms import Model
-from agents.command import Refused, run, say
-from agents.evaluate import play
+from agents.command import Refused, check_range, run, say
+from agents.evaluate import MOST_EPISODES, play
 from agents.intervals import Interval, bootstrap
 from agents.players import trained
 from agents.runs import Run, open_run
@@ -39,7 +39,7 @@ def agent_of(run: Run, model: Model, steps: int, score: Interval | None) -> Agen
         run.task.env_id,
         dict(run.task.env_kwargs),
         tuple((weights.astype(np.float32), biases.astype(np.float32)) for weights, biases in layers),
-        ACTIVATIONS[activations.pop()],  # type: ignore[arg-type]
+        ACTIVATIONS[activations.pop()] if activations else "relu",  # type: ignore[arg-type]
         KINDS[type(run.task.action_space)],  # type: ignore[arg-type]
         facts,
     )
@@ -69,8 +69,10 @@ def write_agent(folder: Path, output: Path, score: Interval | None = None) -> Pa
     output.mkdir(parents=True, exist_ok=True)
     path = output / agent_file(agent.env_id)
     agent.save(path)
-    if path.stat().st_size > LARGEST_FILE:
-        raise Refused(f"{path}: {path.stat().st_size} bytes: must be at most {LARGEST_FILE}")
+    size = path.stat().st_size
+    if size > LARGEST_FILE:
+        path.unlink()
+        raise Refused(f"{path}: {size} bytes: must be at most {LARGEST_FILE}, use smaller layers")
     return path
 
 
@@ -91,6 +93,7 @@ def export(options: ExportOptions) -> int:
 
     A model file can run code when it is loaded: export only runs that you trust.
     """
+    check_range("episodes", options.episodes, 2, MOST_EPISODES)
     finished = open_run(options.run)
     scores = play(finished.task, trained(finished.load_model()), options.episodes).scores
     say(str(write_agent(options.run, options.output, bootstrap([scores]))))

@@ -46,22 +46,27 @@ def checked_render_mode(mode: Any, known: Sequence[str]) -> str | None:
     return mode
 
 
-def steps_of_time_limit(env: gym.Env[Any, Any]) -> int | None:
-    """After how many steps the TimeLimit wrappers that are resetting `env` right now will cut its episode; None: never.
+def resetting_time_limits(env: gym.Env[Any, Any]) -> tuple[gym.wrappers.TimeLimit[Any, Any], ...]:
+    """The TimeLimit wrappers around `env` that are resetting it right now.
 
     An environment does not know what wraps it, and a TimeLimit tells nobody that it cuts an episode: only from the
-    stack of the reset, on which every wrapper stands, can it be learned which step will be the last one, which has to
-    say how the episode ended.
+    stack of a reset, on which every wrapper stands, can it be learned whose step will be the last one, which has to say
+    how the episode ended.
     """
     limits = []
     frame: FrameType | None = sys._getframe(1)
     while frame is not None:
         if frame.f_code.co_name == "reset":
             wrapper = frame.f_locals.get("self")
-            if isinstance(wrapper, gym.wrappers.TimeLimit) and wrapper.unwrapped is env:
-                limits.append(wrapper._max_episode_steps)
+            if isinstance(wrapper, gym.wrappers.TimeLimit) and wrapper.unwrapped is env and wrapper not in limits:
+                limits.append(wrapper)
         frame = frame.f_back
-    return min(limits, default=None)
+    return tuple(limits)
+
+
+def cuts_now(limit: gym.wrappers.TimeLimit[Any, Any]) -> bool:
+    """Whether the step that a TimeLimit is passing on is the last one that it lets an episode have."""
+    return (limit._elapsed_steps or 0) + 1 >= limit._max_episode_steps
 
 
 def world_seed(generator: np.random.Generator) -> np.uint64:
@@ -115,6 +120,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         self._window: Window | None = None
         self._seeded = False
         self._running = False
+        self._time_limits: tuple[gym.wrappers.TimeLimit[Any, Any], ...] = ()
 
     def __getstate__(self) -> dict[str, Any]:
         # Windows can be neither copied nor sent.
@@ -131,6 +137,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         """
         seed = checked_seed("seed", seed)
         snapshot, others = taken_snapshot(seed, options)
+        self._time_limits = resetting_time_limits(self)
         if snapshot is not None:
             observation = self.restore_state(snapshot)
             if self.render_mode == "human":
@@ -141,7 +148,6 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         if seed is not None or not self._seeded:
             self._batch.seed(0, world_seed(self.np_random))
             self._seeded = True
-        self._batch.limit_steps(steps_of_time_limit(self))
         self._batch.reset(np.ones(1, np.bool_), start)
         self._frames.update((0,))
         self._running = True
@@ -156,8 +162,11 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         ended = self._batch.step(action)
         self._frames.update((0,))
         info = self._info()
-        if ended:
-            self._running = False
+        cut = not ended and any(map(cuts_now, self._time_limits))
+        if cut:
+            self._batch.note_cut(0)
+        if ended or cut:
+            self._running = cut
             info |= {key: plain(value[0]) for key, value in self._batch.end_info().items()}
         if self.render_mode == "human":
             self.render()
@@ -217,8 +226,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
     @property
     def status(self) -> tuple[str, ...]:
         """What a player wants to know beside picture and score, in words: balls, multiplier, ball save, time."""
-        memory = self._batch.memory
-        return self._batch.game.status(self._batch.episodes[0], None if memory is None else memory[0])
+        return self._batch.status(0)
 
     def close(self) -> None:
         """Close the window, if there is one."""

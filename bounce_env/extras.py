@@ -66,7 +66,7 @@ def source_folder() -> tuple[Path | None, bool]:
 
 
 def version() -> str:
-    """The version of the package; of a clone that is not installed that of its pyproject.toml."""
+    """The version of the package, as it was installed."""
     try:
         return metadata.version("bounce_env")
     except metadata.PackageNotFoundError:

@@ -17,6 +17,9 @@ from bounce_env.games.options import Options
 from bounce_env.scene import SceneError, builtin_scenes, scene_to_dict
 from bounce_env.wording import shown, unknown_name
 
+FIRST = "num_envs"
+"""The one keyword that may be given by position: that of a vector environment."""
+
 
 class HasKeywords:
     """Base of all environments: what they take by keyword, and their `spec`.
@@ -75,7 +78,8 @@ class HasKeywords:
     def spec(self) -> EnvSpec | None:
         """How the environment was made, with nothing in it that JSON has not: a scene of the user's own is in it whole.
 
-        `max_episode_steps` is the number of steps that the time limit allows, where no smaller one was asked for.
+        `max_episode_steps` is the number of steps that the time limit allows, or a smaller one that was asked for: who
+        makes an environment of it with another `time_limit` or `frame_skip` gives `max_episode_steps=-1`, too.
         """
         return self._spec
 
@@ -87,7 +91,9 @@ class HasKeywords:
         spec = copy(spec)
         spec.kwargs = {name: self._as_json(name, value) for name, value in spec.kwargs.items()}
         if spec.max_episode_steps is None:
-            spec.max_episode_steps = self._batch.game.most_steps
+            asked = spec.kwargs.get("max_episode_steps")
+            limits = [self._batch.game.most_steps, None if asked == -1 else asked]
+            spec.max_episode_steps = min((limit for limit in limits if limit is not None), default=None)
         return spec
 
     def _as_json(self, name: str, value: Any) -> Any:

@@ -32,6 +32,8 @@ class OneWorld:
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin the next episode; see the single environment."""
+        if "reset_mask" in (options or {}):
+            raise ValueError("options['reset_mask']: must be left out where one world is reset")
         seeds = [seed if w == self._index else None for w in range(self._envs.num_envs)]
         observations, info = self._envs.reset(
             seed=None if seed is None else seeds, options={**(options or {}), "reset_mask": self._mask}
@@ -81,6 +83,12 @@ class OneWorld:
     def scene(self) -> Any:
         """The scene of the present episode."""
         return self._envs.scene_of(self._index)
+
+    @property
+    def status(self) -> tuple[str, ...]:
+        """What a player wants to know beside picture and score, in words."""
+        words: tuple[str, ...] = self._envs.status_of(self._index)
+        return words
 
     @property
     def num_envs(self) -> Any:

@@ -22,7 +22,7 @@ from bounce_env.games.clone import States
 from bounce_env.games.start import checked_options
 from bounce_env.one_world import OneWorld, row_of
 from bounce_env.vector import BounceVectorEnv
-from bounce_env.wording import shown
+from bounce_env.wording import shown, whole
 
 # SB3's rollouts need a reset in the same step and observations of their own.
 _FIXED = ("autoreset_mode", "copy", "num_envs", "vectorization_mode")
@@ -40,6 +40,9 @@ class BounceVecEnv(VecEnv):
     def __init__(self, env_id: str, n_envs: int = 1, *, seed: int | None = None, **kwargs: Any) -> None:
         for name in sorted(set(_FIXED).intersection(kwargs)):
             raise ValueError(f"{name} = {kwargs[name]!r}: must be left out, BounceVecEnv sets it")
+        if not isinstance(env_id, str):
+            raise ValueError(f"env_id = {shown(env_id)}: must be the id of an environment")
+        n_envs = whole("n_envs", n_envs, 1)
         entry_point = gym.spec(env_id).vector_entry_point
         creator = load_env_creator(entry_point) if isinstance(entry_point, str) else entry_point
         if creator is None or (isinstance(creator, type) and not issubclass(creator, BounceVectorEnv)):
@@ -64,13 +67,12 @@ class BounceVecEnv(VecEnv):
     def reset(self) -> VecEnvObs:
         """Begin an episode in every world; seeds of `seed()` are used once, then the streams go on."""
         seeds = self._seeds if any(seed is not None for seed in self._seeds) else None
-        for options in self._options:
-            checked_options(options)
-        names = [frozenset(options) for options in self._options]
-        for group in dict.fromkeys(names):  # most often one: those who have the same options are reset together
-            mask = np.array([each == group for each in names])
-            observations, info = self._envs.reset(seed=seeds, options=self._options_of(group, mask))
-            for w in np.flatnonzero(mask).tolist():
+        groups = self._option_groups()  # most often one: those who have options of the same names are reset together
+        for options in groups:
+            self._envs.checked_reset(seeds, options)  # all of them before any world is reset
+        for options in groups:
+            observations, info = self._envs.reset(seed=seeds, options=options)
+            for w in np.flatnonzero(options["reset_mask"]).tolist():
                 self.reset_infos[w] = row_of(info, w)
         self._reset_seeds()
         self._reset_options()
@@ -137,13 +139,23 @@ class BounceVecEnv(VecEnv):
         told = [name for name in ("score", "ball", "level") if name in info]
         return [dict(zip(told, row, strict=True)) for row in zip(*(info[name].tolist() for name in told), strict=True)]
 
-    def _options_of(self, names: frozenset[str], mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
-        """The options of `set_options` of the worlds of `mask`, as the batch takes them: one row per world."""
-        chosen = [self._options[w] for w in np.flatnonzero(mask).tolist()]
+    def _option_groups(self) -> list[dict[str, Any]]:
+        """The options of `set_options` as the batch takes them, one dict for all worlds that have the same names."""
+        given = [checked_options(options) for options in self._options]
+        for options in given:
+            if "reset_mask" in options:
+                raise ValueError("options['reset_mask']: must be left out, a VecEnv resets every world")
+        names = [frozenset(options) for options in given]
+        return [self._rows_of(given, np.array([each == group for each in names])) for group in dict.fromkeys(names)]
+
+    def _rows_of(self, given: list[dict[str, Any]], mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
+        """The options of the worlds of `mask`."""
+        chosen = [given[w] for w in np.flatnonzero(mask).tolist()]
+        names = list(chosen[0])
         if "snapshot" in names:
-            others = {name: chosen[0][name] for name in names - {"snapshot"}}
+            others = {name: chosen[0][name] for name in names if name != "snapshot"}
             snapshots = States.joined([options["snapshot"] for options in chosen])
             return {**others, "snapshot": snapshots, "reset_mask": mask}
         # The rows of worlds that are not reset are not looked at, but must be some that are allowed.
-        rows = [options if mask[w] else chosen[0] for w, options in enumerate(self._options)]
-        return {name: [options[name] for options in rows] for name in names} | {"reset_mask": mask}
+        rows = [options if mask[w] else chosen[0] for w, options in enumerate(given)]
+        return {**{name: [options[name] for options in rows] for name in names}, "reset_mask": mask}

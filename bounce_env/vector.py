@@ -103,17 +103,25 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         seed: an int (world i gets seed + i) or one per world. Other options as for the single env, one for all or one
         row per world. Raises ValueError, and changes nothing, for what is not allowed.
         """
-        options = checked_options(options)
-        mask = self._mask_of("options['reset_mask']", options.pop("reset_mask", None))
-        snapshot, options = taken_snapshot(seed, options)
+        if self.closed:
+            raise gym.error.ClosedEnvironmentError("reset: the environment has been closed")
+        mask, snapshot, start = self.checked_reset(seed, options)
         if snapshot is not None:
             return self.restore_state(snapshot, mask), self._info(mask)
-        start = start_rows(self._batch.game, self.num_envs, options)
         self._seed_worlds(seed, mask)
         self._batch.reset(mask, start)
         self._frames.update(np.flatnonzero(mask).tolist())
         self._ended &= ~mask
         return self._observations(), self._info(mask)
+
+    def checked_reset(self, seed: Any, options: Any) -> tuple[Flags, States | None, npt.NDArray[np.float64]]:
+        """The mask, snapshot and starts of a reset; raises ValueError for what is not allowed, and changes nothing."""
+        options = checked_options(options)
+        mask = self._mask_of("options['reset_mask']", options.pop("reset_mask", None))
+        snapshot, options = taken_snapshot(seed, options)
+        if snapshot is not None:
+            self._batch.check_states(snapshot, mask)
+        return mask, snapshot, start_rows(self._batch.game, self.num_envs, options)
 
     def step(self, actions: Any) -> tuple[Observations, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         """One step of every world. Mode DISABLED raises ResetNeeded while a finished world has not been reset.
@@ -165,6 +173,10 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
     def scene_of(self, world: int) -> Scene:
         """The scene of the present episode of a world."""
         return self._batch.scene(world)
+
+    def status_of(self, world: int) -> tuple[str, ...]:
+        """What a player of a world wants to know beside picture and score, in words."""
+        return self._batch.status(world)
 
     @property
     def ended(self) -> npt.NDArray[Any]:
@@ -244,7 +256,9 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
 
     def _seed_worlds(self, seed: int | Sequence[int | None] | None, mask: Flags) -> None:
         """Seed the worlds of `mask` as the single env would: by their own seed, or once at random."""
-        if isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str | bytes):
+        if isinstance(seed, np.ndarray):
+            seed = seed.tolist()
+        if isinstance(seed, Sequence) and not isinstance(seed, str | bytes):
             seeds = [checked_seed(f"seed[{w}]", each) for w, each in enumerate(seed)]
         else:
             first = checked_seed("seed", seed)
@@ -303,9 +317,9 @@ def called(world: OneWorld, name: str, *args: Any, **kwargs: Any) -> Any:
 
 def _steps(limit: Any) -> int | None:
     # -1 is `gym.make`'s word for no limit.
-    if limit is None or (isinstance(limit, int) and limit == -1):
+    if limit is None or (isinstance(limit, int | np.integer) and limit == -1):
         return None
-    return whole("max_episode_steps", limit, 1, NO_STEP_LIMIT, "None, -1 or a whole number >= 1")
+    return whole("max_episode_steps", limit, 1, NO_STEP_LIMIT, "None, -1 or a whole number >= 1, at most 2^62")
 
 
 def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:

@@ -20,6 +20,8 @@ def shown(value: object) -> str:
         text = repr(value.item() if isinstance(value, np.generic) else value)
     except (ValueError, RecursionError):  # thousands of digits, or of brackets
         return "a value too long to show"
+    except Exception:  # of somebody's own class
+        return f"a {type(value).__name__} that cannot be shown"
     return cut(text if isinstance(value, str) else " ".join(text.split()))
 
 

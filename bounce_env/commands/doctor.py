@@ -7,8 +7,9 @@ import shutil
 import sys
 from pathlib import Path
 
+import bounce_env
 from bounce_env.commands.words import FINE, say
-from bounce_env.extras import install_command, source_folder, version
+from bounce_env.extras import install_command, version
 
 PACKAGES = {
     "": ("gymnasium", "numpy", "numba", "llvmlite", "pydantic"),
@@ -21,9 +22,7 @@ PACKAGES = {
 
 def diagnose() -> int:
     """Print versions, processor, cache folder, display and ffmpeg, a line each."""
-    folder, editable = source_folder()
-    origin = f", {'used in' if editable else 'installed from'} {folder}" if folder else ""
-    say(f"bounce_env         {version()}{origin}")
+    say(f"bounce_env         {version()}, in {Path(bounce_env.__file__).parent}")
     say(f"python             {platform.python_version()}, {sys.executable}")
     say(f"system             {platform.platform()}")
     say(f"processor          {_processor()}, {os.cpu_count()} threads")

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
 
 from bounce_env.commands import games
 from bounce_env.commands.options import Watch
@@ -26,11 +27,11 @@ def watch_game(options: Watch) -> int:
     else:
         games.check_display("--film FILE.mp4 writes a film instead")
     agent = _agent(env_id, options)
+    if "render_mode" in agent.env_kwargs:
+        raise Refused(f"--agent {options.agent}: env_kwargs must not have render_mode")
     kwargs: dict[str, Any] = {"width": options.width, "height": options.height, "trail": options.trail}
     env = games.made(env_id, {**agent.env_kwargs, **kwargs})
-    if env.observation_space.shape != (agent.size,):
-        env.close()
-        raise Refused(f"--agent {options.agent}: was trained on observations of {agent.size} numbers, not of this game")
+    _check_fits(agent, env, options)
     say(f"{env_id}, {_introduced(agent)}; launches of seed {options.seed}")
     prepare(env)
     fps = float(env.metadata["render_fps"])
@@ -38,6 +39,8 @@ def watch_game(options: Watch) -> int:
         if options.film is not None:
             return _film(env, agent, options, fps)
         return _show(env, agent, options, fps, env_id)
+    except OSError as error:  # a disk that is full, a size that no film can have
+        raise Refused(f"--film {options.film}: cannot be written: {error}") from error
     finally:
         env.close()
 
@@ -81,8 +84,8 @@ def _film(env: gym.Env[Any, Any], agent: Agent, options: Watch, fps: float) -> i
 
 
 def _check_film(path: Path) -> None:
-    if path.suffix.lower() != ".mp4":
-        raise Refused(f"--film {path}: must end in .mp4")
+    if path.suffix.lower() != ".mp4" or path.is_dir():
+        raise Refused(f"--film {path}: must be a file that ends in .mp4")
     if not path.parent.is_dir():
         raise Refused(f"--film {path}: there is no folder {path.parent}")
 
@@ -97,9 +100,21 @@ def _agent(env_id: str, options: Watch) -> Agent:
     return agent
 
 
+def _check_fits(agent: Agent, env: gym.Env[Any, Any], options: Watch) -> None:
+    """Raises Refused where the agent cannot see or play what the environment has."""
+    fits = env.observation_space.shape == (agent.size,)
+    if not fits or not env.action_space.contains(agent(np.zeros(agent.size, np.float32))):
+        env.close()
+        raise Refused(f"--agent {options.agent}: was not trained on the observations and actions of this game")
+
+
 def _introduced(agent: Agent) -> str:
     """Who plays, in a few words."""
     facts = agent.facts
-    score = facts.get("score")
-    words = f"{str(facts.get('algo', 'agent')).upper()} after {facts.get('steps', 0) / 1e6:.3g} M steps"
-    return f"{words}, mean score {score['mean']:.4g} ({score['low']:.4g} to {score['high']:.4g})" if score else words
+    algo, steps, score = (facts.get(name) for name in ("algo", "steps", "score"))
+    words = f"{str(algo or 'agent').upper()}"
+    if isinstance(steps, int | float):
+        words += f" after {steps / 1e6:.3g} M steps"
+    if isinstance(score, dict) and all(isinstance(score.get(name), int | float) for name in ("mean", "low", "high")):
+        words += f", mean score {score['mean']:.4g} ({score['low']:.4g} to {score['high']:.4g})"
+    return words

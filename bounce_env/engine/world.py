@@ -25,10 +25,12 @@ from bounce_env.engine.parts import offset_at
 from bounce_env.engine.snapshot import from_bytes, to_bytes
 from bounce_env.engine.view import view
 from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor, Wall
-from bounce_env.scene.fields import LARGEST
 from bounce_env.wording import nearest, numbers, real, shown, whole
 
 Floats = npt.NDArray[np.float64]
+
+LARGEST = 1e15
+"""No number that a world is handed is larger [m, m/s, s]: products of a few stay far from overflow in float64."""
 
 MAX_EVENTS = 1_000_000
 MOST_EVENTS = 2**62
@@ -60,7 +62,7 @@ class World:
     def reset(self, *, position: npt.ArrayLike, velocity: npt.ArrayLike) -> None:
         """Time 0, parts where they start, the balls at `position` [m] with `velocity` [m/s].
 
-        Both are of shape (balls, 2), or (x, y) for one ball, no number beyond 1e9 either way. A paddle starts in the
+        Both are of shape (balls, 2), or (x, y) for one ball, no number beyond 1e15 either way. A paddle starts in the
         middle of its rail, a flipper at its `rest_angle`, a moving bumper at its `center`, a draggable wall where it is
         in the scene. A ball that overlaps an element by no more than round-off is moved to its surface. Raises
         ValueError for another shape, for NaN, infinity and what is no number, and where a ball overlaps an element
@@ -76,7 +78,7 @@ class World:
         self._started = True
 
     def advance(self, seconds: float, *, ledger: bool = False, max_events: int = MAX_EVENTS) -> npt.NDArray[Any] | None:
-        """Let `seconds` pass, 0 to 1e9, or up to `max_events` >= 1 events (then `status` is BUDGET, `time` is that of
+        """Let `seconds` pass, 0 to 1e15, or up to `max_events` >= 1 events (then `status` is BUDGET, `time` is that of
         the last event, and the next call goes on from there). Sensor crossings and stops of parts are events, too.
 
         All that happens to a ball at one instant is one event of the budget.
@@ -163,7 +165,7 @@ class World:
     def push(self, change: npt.ArrayLike) -> None:
         """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now.
 
-        Raises ValueError for NaN, infinity and more than 1e9 either way.
+        Raises ValueError for NaN, infinity and more than 1e15 either way.
         """
         self._check_started()
         rows = numbers(change)
@@ -320,8 +322,9 @@ def _velocities(name: str, value: object, max_speed: float | None) -> Floats:
     rows = numbers(value)
     limit = LARGEST if max_speed is None else max_speed
     if rows is None or rows.shape != (2, 2) or not (np.hypot(*rows.T) < limit).all():
-        words = f"each slower than {limit:g} m/s" if max_speed is None else f"each slower than max_speed, {limit!r} m/s"
-        raise ValueError(f"command {name!r} = {shown(value)}: must be ((vx, vy), (vx, vy)), {words}")
+        whose = "" if max_speed is None else "the scene's max_speed, "
+        words = f"each slower than {whose}{limit!r} m/s"
+        raise ValueError(f"command {name!r} = {shown(value)}: must be ((vx, vy), (vx, vy)), finite, {words}")
     return rows
 
 

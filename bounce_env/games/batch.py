@@ -10,10 +10,21 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.jit import interpreted
 from bounce_env.engine.layout import Array, State, new_state
 from bounce_env.engine.view import view
-from bounce_env.games.clone import States, clone_rows, restore_rows
-from bounce_env.games.episode import END_REASONS, EPISODE, SAME_STEP, Results, Worlds, bind, new_results
+from bounce_env.games.clone import States, check_rows, clone_rows, restore_rows
+from bounce_env.games.episode import (
+    END_REASONS,
+    EPISODE,
+    SAME_STEP,
+    TIME_LIMIT,
+    Results,
+    Worlds,
+    bind,
+    close_books,
+    new_results,
+)
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
 from bounce_env.games.pace import NO_STEP_LIMIT
@@ -80,12 +91,18 @@ class Batch:
 
     def _bound(self) -> Any:
         if self._handle is None:
-            worlds = Worlds(
-                self.state, self.tables, self.episodes, self.memory, self.held, self.counters, self._start,
-                self.results,
-            )  # fmt: skip
-            self._handle = bind(self.rules, worlds)
+            self._handle = bind(self.rules, self._all())
         return self._handle
+
+    def _all(self) -> Worlds:
+        return Worlds(
+            self.state, self.tables, self.episodes, self.memory, self.held, self.counters, self._start, self.results
+        )
+
+    def note_cut(self, world: int) -> None:
+        """Let `end_info` tell of a world's episode as one that was cut by time, though its state goes on."""
+        interpreted(close_books)(self._all(), world)
+        self.results.ended[world]["end"] = TIME_LIMIT
 
     def step(self, actions: npt.ArrayLike) -> int:
         """One step of every world; returns how many episodes ended.
@@ -116,14 +133,19 @@ class Batch:
         return clone_rows(self._digest, self._rows(), mask)
 
     def restore(self, states: States, mask: Mask) -> None:
-        """Let the worlds of `mask` go on from `states`; raises ValueError where they are not of an equal batch.
+        """Let the worlds of `mask` go on from `states`; raises ValueError as `check_states` does."""
+        self.check_states(states, mask)
+        restore_rows(self._rows(), mask, states)
+        self._own_scenes()
+
+    def check_states(self, states: Any, mask: Mask) -> None:
+        """Raise ValueError where `states` are not of an equal batch, a row for each world of `mask`.
 
         And, where worlds are reset in the step in which their episode ends, for states of episodes that have ended.
         """
-        if self.autoreset == SAME_STEP and isinstance(states, States) and states.any_ended():
+        check_rows(self._digest, self._rows(), mask, states)
+        if self.autoreset == SAME_STEP and states.any_ended():
             raise ValueError("state of an episode that has ended: there is none to go on with in mode SAME_STEP")
-        restore_rows(self._digest, self._rows(), mask, states)
-        self._own_scenes()
 
     def _rows(self) -> tuple[Array, ...]:
         """All arrays with a row for each world that steps read."""
@@ -179,6 +201,10 @@ class Batch:
             for i, e in enumerate(scene.elements)
         )
         return replace(scene, elements=tuple(elements)) if places else scene
+
+    def status(self, world: int) -> tuple[str, ...]:
+        """What a player of a world wants to know beside picture and score, in words."""
+        return self.game.status(self.episodes[world], None if self.memory is None else self.memory[world])
 
     def target_places(self, world: int) -> npt.NDArray[np.float64]:
         """The centres of the game's `targets` in a world now, (n, 2) [m]."""

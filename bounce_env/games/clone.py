@@ -44,8 +44,8 @@ def clone_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_]
     return States(game, tuple(array[mask] for array in arrays))
 
 
-def restore_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_], states: States) -> None:
-    """Write states into the rows of `mask`; raises ValueError, before anything is written, where they do not fit."""
+def check_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_], states: object) -> None:
+    """Raise ValueError where states do not fit into the rows of `mask`."""
     if not isinstance(states, States):
         raise ValueError(f"state = {shown(states)}: must be what clone_state() returned")
     if states.game != game:
@@ -54,5 +54,9 @@ def restore_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool
         raise ValueError(f"state of {len(states)} worlds: must be of {mask.sum()}")
     if [(a.dtype, a.shape[1:]) for a in arrays] != [(rows.dtype, rows.shape[1:]) for rows in states.arrays]:
         raise ValueError("state: has other arrays than clone_state() returned")
+
+
+def restore_rows(arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_], states: States) -> None:
+    """Write states that fit into the rows of `mask`."""
     for array, rows in zip(arrays, states.arrays, strict=True):
         array[mask] = rows

@@ -79,7 +79,7 @@ class Game:
     def most_steps(self) -> int | None:
         """How many steps an episode has at most; None where there is no time limit."""
         pace = self.rules.pace
-        return None if math.isinf(pace.limit) else math.ceil(pace.limit / pace.frame_skip)
+        return None if math.isinf(pace.limit) else max(1, math.ceil(pace.limit / pace.frame_skip))
 
 
 def clock(seconds: float) -> str:

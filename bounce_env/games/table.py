@@ -52,7 +52,11 @@ HIDDEN = ("in_play", "plunger", "brace")
 
 def hidden_of(scene: Scene) -> tuple[int, ...]:
     """The elements, by index, that pictures do not show."""
-    return tuple(i for i, e in enumerate(scene.elements) if e.name.startswith(HIDDEN))
+
+    def is_hidden(name: str) -> bool:
+        return any(name == word or name.startswith(f"{word}_") for word in HIDDEN)
+
+    return tuple(i for i, e in enumerate(scene.elements) if is_hidden(e.name))
 
 
 def word_of(name: str) -> str:

@@ -7,7 +7,7 @@ from bounce_env.scene import Box, Field, Scene, Sensor, Wall
 from bounce_env.scene.base import Point, union
 
 LARGEST_ISLAND = 0.1
-"""As a share of the picture: what walls enclose is solid, unless it is so large that balls may play inside."""
+"""As a share of the box around all that bounces: what walls enclose is solid, unless balls may play inside."""
 
 
 def view_box(scene: Scene) -> Box:
@@ -20,12 +20,16 @@ def view_box(scene: Scene) -> Box:
     if not solid:
         return scene.bounds
     box = union(solid)
-    others = (e.bounds for e in scene.elements if isinstance(e, Sensor | Field))
-    return union([box, *(other for other in others if not _meet(box, other))])
+    others = (e for e in scene.elements if isinstance(e, Sensor | Field))
+    return union([box, *(other.bounds for other in others if not _is_seen(other, box))])
 
 
-def _meet(one: Box, other: Box) -> bool:
-    return one[0] <= other[2] and other[0] <= one[2] and one[1] <= other[3] and other[1] <= one[3]
+def _is_seen(region: Sensor | Field, box: Box) -> bool:
+    """Whether some of a region lies in a box; of one that is no segment its own box is asked."""
+    if isinstance(region, Sensor) and region.segment is not None:
+        return clipped(region.segment, box) is not None
+    one = region.bounds
+    return one[0] <= box[2] and box[0] <= one[2] and one[1] <= box[3] and box[1] <= one[3]
 
 
 def clipped(segment: tuple[Point, Point], box: Box) -> tuple[Point, Point] | None:
@@ -49,12 +53,16 @@ def islands(scene: Scene, hidden: Collection[int] = ()) -> list[tuple[Point, ...
 
     hidden: elements that are not looked at.
     """
-    walls = [e for i, e in enumerate(scene.elements) if isinstance(e, Wall) and not e.draggable and i not in hidden]
+    walls = [
+        e
+        for i, e in enumerate(scene.elements)
+        if isinstance(e, Wall) and not (e.draggable or e.one_way) and i not in hidden
+    ]
     neighbours: dict[Point, list[Point]] = defaultdict(list)
     for wall in walls:
         neighbours[wall.start].append(wall.end)
         neighbours[wall.end].append(wall.start)
-    left, bottom, right, top = view_box(scene)
+    left, bottom, right, top = union(e.bounds for e in scene.elements if not isinstance(e, Sensor | Field))
     largest = LARGEST_ISLAND * (right - left) * (top - bottom)
     found, seen = [], set[Point]()
     for first in neighbours:

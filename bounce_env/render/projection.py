@@ -51,10 +51,17 @@ class Projection:
         across = x_max - x_min + 2 * MARGIN * longer
         up = y_max - y_min + 2 * MARGIN * longer
         aspect = min(max(across / up, 1 / LONGEST_SHAPE), LONGEST_SHAPE)
+        asked = ("width", width) if height is None else ("height", height)
         if height is None:
             height = DEFAULT_HEIGHT if width is None else _even(width / aspect)
         if width is None:
             width = _even(height * aspect)
+        if max(width, height) > LARGEST_SIDE:
+            most = int(asked[1] * LARGEST_SIDE / max(width, height)) if asked[1] else 0
+            words = (
+                f"must be at most {most}, for the other side follows the scene's shape and is at most {LARGEST_SIDE}"
+            )
+            raise ValueError(f"{asked[0]} = {asked[1]}: {words}")
         scale = min(width / across, height / up)
         return cls(
             width,

@@ -52,8 +52,16 @@ def line_of(problem: Problem, source: str, labels: Mapping[int, str], literal: s
         case _:
             places = [*map(printable, problem.at)]
     if problem.value is not ABSENT:
-        places = [*places[:-1], " = ".join([*places[-1:], shown(problem.value) if literal is None else cut(literal)])]
+        places = [
+            *places[:-1],
+            " = ".join([*places[-1:], shown(problem.value) if literal is None else _visible(cut(literal))]),
+        ]
     return ": ".join([*([source] if source else []), *places, problem.message])
+
+
+def _visible(literal: str) -> str:
+    """A literal whose letters are all seen: what would steer a terminal is escaped."""
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in literal)
 
 
 def printable(key: object) -> str:

@@ -60,6 +60,9 @@ def explain(error: ValidationError, spec: type) -> ValidationError:
     names = list(signature(spec).parameters)
     fields: dict[str, FieldInfo] = spec.__pydantic_fields__  # type: ignore[attr-defined]
 
+    extra = [e["loc"][0] for e in error.errors() if e["type"] == "unexpected_positional_argument"]
+    by_position = min((position for position in extra if isinstance(position, int)), default=0)
+
     def explained(details: ErrorDetails) -> InitErrorDetails:
         loc, value, message, what = details["loc"], details["input"], details["msg"], details["type"]
         position = loc[0]
@@ -74,7 +77,8 @@ def explain(error: ValidationError, spec: type) -> ValidationError:
             case "unexpected_keyword_argument":
                 kind = PydanticCustomError("unknown", "{words}", {"words": unknown_name(loc[-1], names, "field")})
             case "unexpected_positional_argument":
-                words = f"too many values by position: must be at most {position}, {', '.join(names[: int(position)])}"
+                taken = ", ".join(names[:by_position]) or "none"
+                words = f"too many values by position: only {taken} may be given so"
                 kind = PydanticCustomError("unknown", "{words}", {"words": words})
             case "multiple_argument_values":
                 kind = PydanticCustomError("twice", "is given twice: must be given by position or by name")

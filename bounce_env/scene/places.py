@@ -5,6 +5,7 @@ Only for files that `tomllib` has read, which are known to be TOML: nothing is c
 
 import re
 import tomllib
+from bisect import bisect_left
 from typing import NamedTuple
 
 from bounce_env.scene.errors import Location
@@ -18,6 +19,7 @@ class Place(NamedTuple):
 
 
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_BREAK = re.compile(r"\s*\r?\n\s*")
 _KEY = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|[A-Za-z0-9_-]+')
 _TEXT = re.compile(
     r'"""(?:\\.|[^\\])*?"""(?:"{0,2})|\'\'\'.*?\'\'\'(?:\'{0,2})|"(?:\\.|[^"\\])*"|\'[^\']*\'', re.DOTALL
@@ -37,6 +39,7 @@ class _Reader:
         self.places: dict[Location, Place] = {}
         self._text = text
         self._at = 0
+        self._breaks = [i for i, letter in enumerate(text) if letter == "\n"]
         self._counts: dict[Location, int] = {}  # of tables in each array of tables
         table: Location = ()
         self._skip_blank()
@@ -71,7 +74,10 @@ class _Reader:
         return (*path, keys[-1])
 
     def _assignment(self, table: Location) -> None:
-        line, path = self._line(), (*table, *self._keys())
+        line, keys = self._line(), self._keys()
+        path = (*table, *keys)
+        for n in range(len(table) + 1, len(path)):  # the tables that a dotted key names
+            self.places.setdefault(path[:n], Place(line, None))
         self._at += 1  # the =
         self._value(path, line)
 
@@ -99,7 +105,7 @@ class _Reader:
             match = _TEXT.match(self._text, first) or _BARE.match(self._text, first)
             assert match is not None
             self._at = match.end()
-        self.places[path] = Place(line, " ".join(self._text[first : self._at].split()))
+        self.places[path] = Place(line, _BREAK.sub(" ", self._text[first : self._at]).rstrip())
 
     def _items(self, path: Location, closing: str) -> None:
         """The values of an array, or the assignments of an inline table."""
@@ -123,7 +129,7 @@ class _Reader:
         self._at = match.end()
 
     def _line(self) -> int:
-        return self._text.count("\n", 0, self._at) + 1
+        return bisect_left(self._breaks, self._at) + 1
 
 
 def _decoded(key: str) -> str:

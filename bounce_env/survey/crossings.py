@@ -83,10 +83,18 @@ def _of_walls(one: Wall, other: Wall, tolerance: float) -> Iterator[Point]:
         low, high = max(min(a, b), 0.0), min(max(a, b), length)
         if high - low > 2.0 * tolerance:
             yield _between(one.start, one.end, 0.5 * (low + high) / length)
-    elif min(h, k) < 0.0 < max(h, k):
+    elif min(h, k) < -tolerance and max(h, k) > tolerance and _is_crossed(one, other, tolerance):
         along = a + (b - a) * h / (h - k)
         if 0.0 < along < length:
             yield _between(one.start, one.end, along / length)
+
+
+def _is_crossed(one: Wall, other: Wall, tolerance: float) -> bool:
+    """Whether the ends of `one` lie on both sides of the line through `other`, by more than the tolerance."""
+    (x0, y0), (x1, y1) = other.start, other.end
+    length = math.dist(other.start, other.end)
+    sides = [((y - y0) * (x1 - x0) - (x - x0) * (y1 - y0)) / length for x, y in (one.start, one.end)]
+    return min(sides) < -tolerance and max(sides) > tolerance
 
 
 def _on_circle(wall: Wall, arc: Arc, tolerance: float) -> Iterator[Point]:
@@ -123,7 +131,8 @@ def _of_arcs(one: Arc, other: Arc, tolerance: float) -> Iterator[Point]:
 
 def _on_one_circle(one: Arc, other: Arc, tolerance: float) -> Iterator[Point]:
     """A place in the middle of what two arcs of one circle share."""
-    for turn in (-2.0 * math.pi, 0.0, 2.0 * math.pi):
+    turns = round((one.start_angle - other.start_angle) / (2.0 * math.pi))
+    for turn in (2.0 * math.pi * (turns + k) for k in (-1, 0, 1)):
         low = max(one.start_angle, other.start_angle + turn)
         high = min(one.end_angle, other.end_angle + turn)
         if (high - low) * one.radius > 2.0 * tolerance:

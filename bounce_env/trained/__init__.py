@@ -5,7 +5,6 @@ Each is a .npz file of an SB3 policy's layers, made by `make results`: NumPy alo
 
 import json
 import os
-import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import resources
@@ -16,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.files import replacing
-from bounce_env.wording import nearest, shown
+from bounce_env.wording import nearest, numbers, shown
 
 Floats = npt.NDArray[np.float32]
 
@@ -54,7 +53,10 @@ class Agent:
 
         Raises ValueError for another shape, and for what is not finite.
         """
-        x = np.asarray(observations, np.float32)
+        given = numbers(observations)
+        if given is None:
+            raise ValueError(f"observations = {shown(observations)}: must be numbers")
+        x = given.astype(np.float32)
         if x.ndim not in (1, 2) or x.shape[-1] != self.size:
             raise ValueError(f"observations of shape {x.shape}: must be ({self.size},) or (n, {self.size})")
         if not np.isfinite(x).all():
@@ -93,25 +95,33 @@ class Agent:
                 meta = json.loads(str(file["meta"]))
                 count = sum(name.startswith("w") for name in file.files)
                 layers = tuple((file[f"w{i}"], file[f"b{i}"]) for i in range(count))
-        except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
+        except Exception as error:  # whatever zip, zlib, NumPy and JSON make of a file that is damaged or another's
             raise ValueError(f"{path}: is no agent of bounce_env: {error}") from error
-        if meta.get("version") != VERSION:
-            raise ValueError(f"{path}: version {meta.get('version')}: must be {VERSION}")
         _check(layers, meta, path)
         return cls(meta["env_id"], meta["env_kwargs"], layers, meta["activation"], meta["actions"], meta["facts"])
 
 
-def _check(layers: tuple[tuple[Floats, Floats], ...], meta: Mapping[str, Any], path: object) -> None:
-    width = layers[0][0].shape[1] if layers and layers[0][0].ndim == 2 else -1
+FIELDS: dict[str, type] = {"env_id": str, "env_kwargs": dict, "activation": str, "actions": str, "facts": dict}
+"""What a file's meta must have beside its version."""
+
+
+def _check(layers: tuple[tuple[Floats, Floats], ...], meta: Any, path: object) -> None:
+    if not isinstance(meta, dict) or meta.get("version") != VERSION:
+        raise ValueError(f"{path}: must be an agent of version {VERSION}")
+    for name, kind in FIELDS.items():
+        if not isinstance(meta.get(name), kind):
+            raise ValueError(f"{path}: {name} = {shown(meta.get(name))}: must be {kind.__name__}")
+    if meta["activation"] not in ACTIVATIONS or meta["actions"] not in ("discrete", "box", "buttons"):
+        raise ValueError(f"{path}: must have an activation and a kind of actions that are known")
+    width = layers[0][0].shape[1] if layers and layers[0][0].ndim == 2 else 0
     for weights, biases in layers:
-        fits = weights.ndim == 2 and weights.shape[1] == width and biases.shape == weights.shape[:1]
+        fits = weights.ndim == 2 and weights.shape[1] == width > 0 and biases.shape == weights.shape[:1]
         if not (fits and weights.dtype == biases.dtype == np.float32):
-            raise ValueError(
-                f"{path}: layers of shapes {[w.shape for w, _ in layers]}: must be float32 and fit together"
-            )
+            shapes = [weights.shape for weights, _ in layers]
+            raise ValueError(f"{path}: layers of shapes {shapes}: must be float32 and fit together")
         width = len(biases)
-    if not layers or meta["activation"] not in ACTIVATIONS or meta["actions"] not in ("discrete", "box", "buttons"):
-        raise ValueError(f"{path}: must have layers, an activation and a kind of actions that are known")
+    if width == 0:
+        raise ValueError(f"{path}: must have layers")
 
 
 def shipped_agents() -> tuple[str, ...]:

@@ -136,8 +136,9 @@ def test_closed_is_closed():
     envs.reset()
     envs.step(np.zeros((4, 1)))
     envs.close()
-    with pytest.raises(gym.error.ClosedEnvironmentError, match="closed"):
-        envs.step(np.zeros((4, 1)))
+    for call in (lambda: envs.step(np.zeros((4, 1))), envs.reset):
+        with pytest.raises(gym.error.ClosedEnvironmentError, match="closed"):
+            call()
 
 
 def test_actions_that_are_read_only_compile_nothing_anew():
@@ -215,6 +216,43 @@ def test_a_ball_that_is_lost_in_the_last_step_ends_alike_everywhere(env_id, kwar
     assert one[4]["end_reason"] == all_[4]["end_reason"][0] != "time_limit"
 
 
+@pytest.mark.parametrize("env_id", IDS)
+def test_a_time_limit_counts_the_steps_of_its_own_level(env_id):
+    """Not those of the environment, of which a wrapper between them takes several at a time."""
+    env = TimeLimit(gym.wrappers.MaxAndSkipObservation(gym.make(env_id), skip=4), 6)
+    for _ in range(2):
+        env.reset(seed=0)
+        for k in range(6):
+            *_, terminated, truncated, info = env.step(np.zeros_like(env.action_space.sample()))
+            assert (terminated, truncated) == (False, k == 5)
+            assert ("end_reason" in info) == (k == 5)
+        assert info["end_reason"] == "time_limit"
+
+
+def test_a_limit_counts_on_after_a_state_was_restored():
+    env = gym.make(PADDLE, max_episode_steps=20)
+    env.reset(seed=0)
+    for _ in range(5):
+        env.step([0.0])
+    state = env.unwrapped.clone_state()
+    for k in range(5, 20):
+        if k == 12:
+            env.unwrapped.restore_state(state)
+        *_, truncated, info = env.step([0.0])
+        assert truncated == (k == 19) == ("end_reason" in info)
+    env.reset(options={"snapshot": state})
+    for k in range(20):
+        *_, truncated, info = env.step([0.0])
+        assert truncated == (k == 19) == ("end_reason" in info)
+
+
+def test_a_spec_tells_the_smallest_limit():
+    assert vector(PADDLE, 2, max_episode_steps=7).spec.max_episode_steps == 7
+    assert vector(PADDLE, 2, max_episode_steps=np.int64(-1), time_limit=2.0).spec.max_episode_steps == 60
+    tiny = gym.make(gym.make(PADDLE, time_limit=1e-9).spec)
+    assert tiny.spec.max_episode_steps == 1
+
+
 def test_a_limit_that_is_taken_away_is_forgotten():
     env = gym.make(PADDLE, max_episode_steps=3)
     env.reset(seed=0)
@@ -248,7 +286,7 @@ def test_call_get_attr_and_set_attr_are_those_of_single_environments():
     ours = vector(PADDLE, 2, num_levels=0, render_mode="rgb_array", height=40)
     theirs = gym.make_vec(PADDLE, 2, vectorization_mode="sync", num_levels=0, render_mode="rgb_array", height=40)
     assert_same(ours.reset(seed=3), theirs.reset(seed=3))
-    for name in ("scene", "render_mode", "action_space", "observation_space"):
+    for name in ("scene", "render_mode", "action_space", "observation_space", "status"):
         assert ours.get_attr(name) == theirs.get_attr(name)
     assert ours.get_attr("scene")[0] != ours.get_attr("scene")[1]
     assert_same(ours.call("render"), theirs.call("render"))

@@ -214,6 +214,16 @@ def test_worlds_may_have_other_options_and_snapshots():
     assert_same(envs.reset(), observations)
 
 
+def test_options_of_one_world_that_are_refused_reset_none():
+    envs, other = (BounceVecEnv(PADDLE, 2, seed=2) for _ in range(2))
+    envs.reset(), other.reset()
+    for bad in ([{"position": (0.5, 0.6)}, {"foo": 1}], [{"velocity": (0.0, 1.0)}, {"reset_mask": np.ones(2, bool)}]):
+        envs.set_options(bad)
+        with pytest.raises(ValueError, match="options"):
+            envs.reset()
+    assert_same(envs.step(np.zeros((2, 1)))[0], other.step(np.zeros((2, 1)))[0])
+
+
 def test_what_is_no_environment_of_ours_is_refused():
     for env_id in ("CartPole-v1", "Pendulum-v1"):
         with pytest.raises(ValueError, match=f"env_id = '{env_id}': must be an environment of bounce_env"):

@@ -139,6 +139,9 @@ def test_errors_name_the_line_of_the_key_and_the_literal(tmp_path):
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
+        ("\nball.radus.x = 1", 2, "ball: radus = {'x': 1}: unknown field (did you mean 'radius'?)"),
+        ('[[elements]]\ntype = "wa  ll"', 2, 'type = "wa  ll": must be one of'),
+        ('[[elements]]\ntype = "a\u202e\u009b31mb"', 2, 'type = "a\\u202e\\x9b31mb": must be one of'),
         ('[[elements]]\ntype = "wall"\nstart = [0, 0]\nend = [1, 0]\nkick = 2\n', 5, "max_speed: required"),
         ('[ball]\nb = 2\n[[elements]]\ntype = "wall"\nstart = [0, 0]\nend = [1, 0]\n', 2, "max_speed: required"),
         (

@@ -46,7 +46,7 @@ def checked_render_mode(mode: Any, known: Sequence[str]) -> str | None:
     return mode
 
 
-def resetting_time_limits(env: gym.Env[Any, Any]) -> tuple[gym.wrappers.TimeLimit[Any, Any], ...]:
+def resetting_time_limits(env: gym.Env[Any, Any]) -> tuple[gym.Wrapper[Any, Any, Any, Any], ...]:
     """The TimeLimit wrappers around `env` that are resetting it right now.
 
     An environment does not know what wraps it, and a TimeLimit tells nobody that it cuts an episode: only from the
@@ -64,9 +64,9 @@ def resetting_time_limits(env: gym.Env[Any, Any]) -> tuple[gym.wrappers.TimeLimi
     return tuple(limits)
 
 
-def cuts_now(limit: gym.wrappers.TimeLimit[Any, Any]) -> bool:
+def cuts_now(limit: Any) -> bool:
     """Whether the step that a TimeLimit is passing on is the last one that it lets an episode have."""
-    return (limit._elapsed_steps or 0) + 1 >= limit._max_episode_steps
+    return bool((limit._elapsed_steps or 0) + 1 >= limit._max_episode_steps)
 
 
 def world_seed(generator: np.random.Generator) -> np.uint64:
@@ -120,7 +120,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         self._window: Window | None = None
         self._seeded = False
         self._running = False
-        self._time_limits: tuple[gym.wrappers.TimeLimit[Any, Any], ...] = ()
+        self._time_limits: tuple[gym.Wrapper[Any, Any, Any, Any], ...] = ()
 
     def __getstate__(self) -> dict[str, Any]:
         # Windows can be neither copied nor sent.

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+import numpy as np
 from numba.core import caching, cgutils
 from numba.core import types as nb_types
 from numba.extending import intrinsic, overload
@@ -149,13 +150,25 @@ def routine(python_function: F) -> F:
 
 def kernel(python_function: F) -> F:
     """Compile an entry point and keep its binary on disk."""
+    if numba.config.DISABLE_JIT:
+        return _without_warnings(python_function)
     compiled: Any = numba.njit(**POLICY, pipeline_class=KernelCompiler)(python_function)
-    if not numba.config.DISABLE_JIT:
-        try:
-            compiled._cache = _KernelCache(compiled.py_func)
-        except RuntimeError:  # Numba's, where no folder can be written
-            compiled._cache = _NoCache()
+    try:
+        compiled._cache = _KernelCache(compiled.py_func)
+    except RuntimeError:  # Numba's, where no folder can be written
+        compiled._cache = _NoCache()
     return compiled
+
+
+def _without_warnings(python_function: F) -> F:
+    """Run a kernel as Python, where NumPy's scalars warn of what compiled code does silently: wrap around, overflow."""
+
+    @functools.wraps(python_function)
+    def quiet(*arguments: Any) -> Any:
+        with np.errstate(all="ignore"):
+            return python_function(*arguments)
+
+    return quiet  # type: ignore[return-value]
 
 
 def from_python(compiled: F) -> F:

@@ -95,3 +95,23 @@ def test_scenes_of_one_feature_set_share_a_kernel() -> None:
     first = signatures_after([*walls[:1], *bumpers[:1]])
     assert signatures_after([*walls, *bumpers]) == first
     assert signatures_after([*bumpers]) == first + 1
+
+
+PLAY = """
+import gymnasium as gym
+import bounce_env
+for game in ("Paddle", "Pinball", "Walls"):
+    env = gym.make(f"Bounce/{game}-v0", disable_env_checker=True)
+    env.reset(seed=3)
+    for _ in range(3):
+        print(env.step(env.action_space.sample() * 0)[0].tobytes().hex())
+"""
+
+
+def test_with_the_jit_off_games_play_the_same_bits_and_warn_of_nothing() -> None:
+    """NumPy's scalars warn where compiled integers silently wrap around."""
+    run = [sys.executable, "-W", "error", "-c", PLAY]
+    off = subprocess.run(run, env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, capture_output=True, text=True, check=False)
+    assert off.returncode == 0, off.stderr
+    on = subprocess.run(run, capture_output=True, text=True, check=True)
+    assert off.stdout == on.stdout

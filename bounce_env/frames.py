@@ -10,8 +10,9 @@ from gymnasium import spaces
 from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
-from bounce_env.engine.layout import OUT, Array, State
-from bounce_env.engine.view import view
+from bounce_env.engine.memory.records import OUT, Array
+from bounce_env.engine.memory.state import State
+from bounce_env.engine.motion.readout import view
 from bounce_env.games.batch import Batch
 from bounce_env.games.options import CONFIG, options, refuse
 from bounce_env.render import Picture, Renderer

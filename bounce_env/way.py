@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.layout import OUT
+from bounce_env.engine.memory.records import OUT
 
 SPACING = 1 / 60
 """Seconds between two points of a flight: closer than one can tell from the curve."""

@@ -9,12 +9,12 @@ import struct
 
 import numpy as np
 
-from bounce_env.engine.layout import Array, State
+from bounce_env.engine.memory.records import Array
+from bounce_env.engine.memory.state import State
 from bounce_env.scene import Scene
 from bounce_env.wording import shown
 
 VERSION = 2
-
 _MAGIC = b"bounce_env world"
 _HEAD = struct.Struct("<16sI32s")
 _CHECKSUM = 32

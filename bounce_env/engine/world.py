@@ -5,7 +5,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.entry import (
+from bounce_env.engine.compile.jit import from_python
+from bounce_env.engine.events.loop import LEDGER_FULL
+from bounce_env.engine.memory.records import LEDGER, OUT
+from bounce_env.engine.memory.state import State, Tables, new_state
+from bounce_env.engine.motion.parts import offset_at
+from bounce_env.engine.motion.readout import view
+from bounce_env.engine.packing import pack, switch_ends
+from bounce_env.engine.placement import Core, apart, cleared, cores_at_start
+from bounce_env.engine.snapshot import from_bytes, to_bytes
+from bounce_env.engine.world_kernels import (
     advance_to,
     begin_call,
     command_part,
@@ -16,27 +25,16 @@ from bounce_env.engine.entry import (
     resolve_all,
     resume_as_told,
 )
-from bounce_env.engine.jit import from_python
-from bounce_env.engine.layout import LEDGER, OUT, State, Tables, new_state
-from bounce_env.engine.loop import LEDGER_FULL
-from bounce_env.engine.overlap import Core, apart, cleared, cores_at_start
-from bounce_env.engine.pack import pack, switch_ends
-from bounce_env.engine.parts import offset_at
-from bounce_env.engine.snapshot import from_bytes, to_bytes
-from bounce_env.engine.view import view
 from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor, Wall
 from bounce_env.wording import nearest, numbers, real, shown, whole
 
 Floats = npt.NDArray[np.float64]
-
 LARGEST = 1e15
 """No number that a world is handed is larger [m, m/s, s]: products of a few stay far from overflow in float64."""
-
 MAX_EVENTS = 1_000_000
 MOST_EVENTS = 2**62
 MAX_BALLS = 64
 _LEDGER_ROWS = 1024
-
 _offset_at = from_python(offset_at)
 
 
@@ -83,8 +81,8 @@ class World:
 
         All that happens to a ball at one instant is one event of the budget.
 
-        Returns the ledger of this call if asked for: a structured array (fields: `engine.layout.LEDGER`), one row an
-        event in order of time; design.md, "Ledger". Raises ValueError for arguments that are not allowed.
+        Returns the ledger of this call if asked for: a structured array (fields: `engine.memory.records.LEDGER`), one
+        row an event in order of time; design.md, "Ledger". Raises ValueError for arguments that are not allowed.
         """
         self._check_started()
         seconds = real("seconds", seconds, 0.0, LARGEST, f"finite and >= 0, at most {LARGEST:g}")
@@ -274,7 +272,7 @@ class World:
 
     @property
     def status(self) -> npt.NDArray[np.int64]:
-        """One of OK, BUDGET, CRUSHED, OUT (`engine.layout`) for each ball, shape (balls,)."""
+        """One of OK, BUDGET, CRUSHED, OUT (`engine.memory.records`) for each ball, shape (balls,)."""
         self._check_started()
         return np.array([ball.status for ball in self._state.balls[0]], np.int64)
 

@@ -6,7 +6,7 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.jit import function
+from bounce_env.engine.compile.jit import function
 from bounce_env.wording import shown
 
 Controls: TypeAlias = npt.NDArray[np.float64]

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.jit import interpreted
-from bounce_env.engine.layout import Array, State, new_state
-from bounce_env.engine.view import view
+from bounce_env.engine.compile.jit import interpreted
+from bounce_env.engine.memory.records import Array
+from bounce_env.engine.memory.state import State, new_state
+from bounce_env.engine.motion.readout import view
 from bounce_env.games.clone import States, check_rows, clone_rows, restore_rows
 from bounce_env.games.episode import (
     END_REASONS,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.layout import Array
+from bounce_env.engine.memory.records import Array
 from bounce_env.games.episode import EPISODE, RUNNING
 from bounce_env.wording import shown
 

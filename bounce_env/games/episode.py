@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from numba.experimental import structref
 
-from bounce_env.engine.jit import Record, borrow, function, kernel
-from bounce_env.engine.layout import State, Tables, record
+from bounce_env.engine.compile.jit import Record, borrow, function, kernel
+from bounce_env.engine.memory.records import record
+from bounce_env.engine.memory.state import State, Tables
 from bounce_env.games.streams import EPISODES, STICKY_ACTIONS, bits, uniform
 
 Array = npt.NDArray[Any]
@@ -125,7 +126,7 @@ def new_results(worlds: int, size: int, counters: int) -> Results:
 
 @function
 def borrow_results(results: Results) -> Results:
-    """The same results, borrowed; see `engine.jit.borrow`."""
+    """The same results, borrowed; see `engine.compile.jit.borrow`."""
     return Results(
         borrow(results.observations),
         borrow(results.rewards),

@@ -2,7 +2,7 @@
 
 import math
 
-from bounce_env.engine.jit import Record, function
+from bounce_env.engine.compile.jit import Record, function
 
 
 @function

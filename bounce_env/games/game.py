@@ -6,8 +6,9 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.layout import Array, Tables
-from bounce_env.engine.pack import pack
+from bounce_env.engine.memory.records import Array
+from bounce_env.engine.memory.state import Tables
+from bounce_env.engine.packing import pack
 from bounce_env.games.actions import Actions
 from bounce_env.games.episode import FPS
 from bounce_env.games.options import Options

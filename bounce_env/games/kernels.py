@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from bounce_env.engine.jit import borrow, function, kernel
-from bounce_env.engine.layout import Array, borrow_state, borrow_tables
+from bounce_env.engine.compile.jit import borrow, function, kernel
+from bounce_env.engine.memory.records import Array
+from bounce_env.engine.memory.state import borrow_state, borrow_tables
 from bounce_env.games.episode import (
     ALL_PLAYED,
     DRAINED,
@@ -52,7 +53,7 @@ def borrow_rules(rules: Any) -> Any:
 
 @function
 def _borrowed(handle: Any) -> Worlds:
-    """All that the handle holds but the rules, borrowed; see `engine.jit.borrow`."""
+    """All that the handle holds but the rules, borrowed; see `engine.compile.jit.borrow`."""
     return Worlds(
         borrow_state(handle.state),
         borrow_tables(handle.tables),

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.jit import Record, Table, borrow, from_python, function
-from bounce_env.engine.layout import Array, State, Tables, record
-from bounce_env.engine.parts import offset_at
+from bounce_env.engine.compile.jit import Record, Table, borrow, from_python, function
+from bounce_env.engine.memory.records import Array, record
+from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.motion.parts import offset_at
 from bounce_env.games.field import place_seen
 from bounce_env.games.streams import LAYOUTS, LEVELS, uniform
 from bounce_env.scene import Bumper, Scene, moves
@@ -55,7 +56,7 @@ class Levels(NamedTuple):
 
 @function
 def borrow_levels(levels: Levels) -> Levels:
-    """The same, borrowed; see `engine.jit.borrow`."""
+    """The same, borrowed; see `engine.compile.jit.borrow`."""
     return Levels(borrow(levels.bumpers), borrow(levels.area), levels.gap, levels.number, levels.first)
 
 

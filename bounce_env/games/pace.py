@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from bounce_env.engine.jit import Record, function
+from bounce_env.engine.compile.jit import Record, function
 from bounce_env.games.episode import FPS
 from bounce_env.games.options import Options
 

@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from bounce_env.engine.command import command, command_unwatched
-from bounce_env.engine.disturb import place
-from bounce_env.engine.jit import Table, function
-from bounce_env.engine.layout import OUT, Array, State, Tables
-from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
-from bounce_env.engine.parts import offset_at
-from bounce_env.engine.trig import sin_cos
-from bounce_env.engine.view import ball_now, core_now
+from bounce_env.engine.compile.jit import Table, function
+from bounce_env.engine.events.commands import command, command_unwatched
+from bounce_env.engine.events.flights import place
+from bounce_env.engine.events.loop import DONE, clear_hits, is_calm, restart, resume, run
+from bounce_env.engine.memory.records import OUT, Array
+from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.motion.parts import offset_at
+from bounce_env.engine.motion.readout import ball_now, core_now
+from bounce_env.engine.motion.sincos import sin_cos
 from bounce_env.games.actions import Continuous, Discrete, clipped
 from bounce_env.games.episode import (
     DRAINED,

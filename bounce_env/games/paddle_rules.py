@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.jit import borrow, function
-from bounce_env.engine.layout import Array, record
-from bounce_env.engine.pack import direction
+from bounce_env.engine.compile.jit import borrow, function
+from bounce_env.engine.memory.records import Array, record
+from bounce_env.engine.packing import direction
 from bounce_env.games.levels import Levels, borrow_levels, levels_of
 from bounce_env.games.options import PaddleOptions
 from bounce_env.games.pace import Pace, pace_of
@@ -49,7 +49,7 @@ class Rules(NamedTuple):
 
 @function
 def borrow_rules(rules: Rules) -> Rules:
-    """The same rules, borrowed; see `engine.jit.borrow`."""
+    """The same rules, borrowed; see `engine.compile.jit.borrow`."""
     return Rules(
         borrow(rules.fields),
         borrow_levels(rules.levels),

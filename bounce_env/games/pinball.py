@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.command import command
-from bounce_env.engine.disturb import disturb, place
-from bounce_env.engine.jit import Table, function, interpreted
-from bounce_env.engine.layout import OUT, Array, State
-from bounce_env.engine.loop import DONE, clear_hits, is_calm, restart, resume, run
-from bounce_env.engine.view import ball_now
+from bounce_env.engine.compile.jit import Table, function, interpreted
+from bounce_env.engine.events.commands import command
+from bounce_env.engine.events.flights import disturb, place
+from bounce_env.engine.events.loop import DONE, clear_hits, is_calm, restart, resume, run
+from bounce_env.engine.memory.records import OUT, Array
+from bounce_env.engine.memory.state import State
+from bounce_env.engine.motion.readout import ball_now
 from bounce_env.games.actions import Buttons, Discrete
 from bounce_env.games.episode import (
     DRAINED,

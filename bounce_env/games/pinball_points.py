@@ -1,6 +1,6 @@
 """What hits are worth in pinball: points, lamps, the multiplier."""
 
-from bounce_env.engine.jit import function
+from bounce_env.engine.compile.jit import function
 from bounce_env.games.episode import Worlds
 from bounce_env.games.pinball_rules import BANKS, BY_BUMPERS, BY_ROLLOVERS, BY_SLINGSHOTS, BY_TARGETS, TOUCHES, Rules
 from bounce_env.games.table import BUMPER, FLIPPER, IN_PLAY, NOTHING, SLINGSHOT, TARGET

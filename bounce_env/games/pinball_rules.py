@@ -2,8 +2,8 @@
 
 from typing import Any, NamedTuple
 
-from bounce_env.engine.jit import borrow, function
-from bounce_env.engine.layout import record
+from bounce_env.engine.compile.jit import borrow, function
+from bounce_env.engine.memory.records import record
 from bounce_env.games.episode import FPS
 from bounce_env.games.pace import Pace
 from bounce_env.games.table import Layout
@@ -57,7 +57,7 @@ class Rules(NamedTuple):
 
 @function
 def borrow_rules(rules: Rules) -> Rules:
-    """The same rules, borrowed; see `engine.jit.borrow`."""
+    """The same rules, borrowed; see `engine.compile.jit.borrow`."""
     layout = rules.layout
     borrowed = Layout(
         borrow(layout.tables),

@@ -2,11 +2,12 @@
 
 from typing import Any
 
-from bounce_env.engine.instant import since
-from bounce_env.engine.jit import Table, function
-from bounce_env.engine.layout import Array, State
-from bounce_env.engine.parts import offset_at
-from bounce_env.engine.view import ball_now
+from bounce_env.engine.compile.jit import Table, function
+from bounce_env.engine.memory.records import Array
+from bounce_env.engine.memory.state import State
+from bounce_env.engine.motion.instant import since
+from bounce_env.engine.motion.parts import offset_at
+from bounce_env.engine.motion.readout import ball_now
 from bounce_env.games.episode import Worlds
 from bounce_env.games.field import place_seen
 from bounce_env.games.pinball_points import FARMED, HIGHEST_MULTIPLIER

@@ -7,7 +7,7 @@ A game is a NamedTuple type of rules (all that its functions need to know beside
 * `glide(rules, worlds, actions, w)`: the same where surely nothing happens; or does nothing, returns False;
 * `observe(rules, worlds, w, out)`: what an agent sees, into `out[w]`;
 
-and `borrow_rules(rules)`, the same rules with arrays that are not counted (see `engine.jit.borrow`).
+and `borrow_rules(rules)`, the same rules with arrays that are not counted (see `engine.compile.jit.borrow`).
 """
 
 import functools
@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from numba.extending import overload
 
-from bounce_env.engine.jit import INLINED
+from bounce_env.engine.compile.jit import INLINED
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.overlap import cleared, cores_at_start
+from bounce_env.engine.placement import cleared, cores_at_start
 from bounce_env.games.game import Game
 from bounce_env.games.levels import END_OF_LEVELS
 from bounce_env.wording import at_least, at_most, nearest, numbers, shown

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bounce_env.engine.jit import function
+from bounce_env.engine.compile.jit import function
 
 EPISODES = np.uint64(1)  # seed of the k-th episode of a world
 LAUNCHES = np.uint64(2)  # index 16 k + j: the j-th number of the launch of ball k

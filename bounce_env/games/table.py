@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.layout import Array, record
+from bounce_env.engine.memory.records import Array, record
 from bounce_env.scene import Element, Field, Flipper, Scene, Sensor, Wall
 
 # What an element is to the game.

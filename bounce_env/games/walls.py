@@ -5,12 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from bounce_env.engine import layout
-from bounce_env.engine.command import command_ends
-from bounce_env.engine.jit import Table, function
-from bounce_env.engine.layout import OUT, Array, State, Tables
-from bounce_env.engine.loop import DONE, clear_hits, resume
-from bounce_env.engine.view import ball_now, core_now
+from bounce_env.engine.compile.jit import Table, function
+from bounce_env.engine.events.commands import command_ends
+from bounce_env.engine.events.loop import DONE, clear_hits, resume
+from bounce_env.engine.memory import records as layout
+from bounce_env.engine.memory.records import OUT, Array
+from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.motion.readout import ball_now, core_now
 from bounce_env.games.actions import Continuous, clipped
 from bounce_env.games.episode import (
     ALL_PLAYED,

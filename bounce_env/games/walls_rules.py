@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.jit import borrow, function
-from bounce_env.engine.layout import Array, record
-from bounce_env.engine.overlap import cores_at_start, describe, gaps
+from bounce_env.engine.compile.jit import borrow, function
+from bounce_env.engine.memory.records import Array, record
+from bounce_env.engine.placement import cores_at_start, describe, gaps
 from bounce_env.games.episode import FPS
 from bounce_env.games.options import WallsOptions
 from bounce_env.games.pace import Pace, pace_of
@@ -59,7 +59,7 @@ class Rules(NamedTuple):
 
 @function
 def borrow_rules(rules: Rules) -> Rules:
-    """The same rules, borrowed; see `engine.jit.borrow`."""
+    """The same rules, borrowed; see `engine.compile.jit.borrow`."""
     return Rules(
         borrow(rules.courts),
         rules.pace,

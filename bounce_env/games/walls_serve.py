@@ -2,10 +2,10 @@
 
 import math
 
-from bounce_env.engine.disturb import place
-from bounce_env.engine.jit import Table, function, routine
-from bounce_env.engine.layout import State, Tables
-from bounce_env.engine.loop import restart, resume, run
+from bounce_env.engine.compile.jit import Table, function, routine
+from bounce_env.engine.events.flights import place
+from bounce_env.engine.events.loop import restart, resume, run
+from bounce_env.engine.memory.state import State, Tables
 from bounce_env.games.episode import Worlds
 from bounce_env.games.streams import LAUNCHES, TARGETS, uniform
 from bounce_env.games.walls_rules import (
@@ -43,7 +43,7 @@ def serve(rules: Rules, worlds: Worlds, w: int) -> None:
 
 @routine
 def advance(state: State, tables: Tables, w: int, until: float, max_events: int) -> int:
-    """Process the events of world `w` up to an instant [s] since its ball was launched; see `engine.loop.run`."""
+    """Process the events of world `w` up to an instant [s] since its launch; see `engine.events.loop.run`."""
     return run(state, tables, w, until, 0.0, max_events, None)
 
 

@@ -85,7 +85,7 @@ class Wall(_Surface):
     draggable: True lets commands move the two ends, each at its own velocity; not with one_way. min_length: metres, > 0
     and no more than it is long at first; where the ends come so near to each other both stop; None for a tenth of the
     first length. reach: two corners of the box in which the ends stay, each coordinate stopping by itself at the box's
-    border; None for the square about the origin that holds the scene (`engine.pack.extent`). The last two of a
+    border; None for the square about the origin that holds the scene (`engine.packing.extent`). The last two of a
     draggable wall only.
     """
 

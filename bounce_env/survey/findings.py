@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.overlap import describe
+from bounce_env.engine.placement import describe
 from bounce_env.scene import Scene, Sensor
 from bounce_env.survey.crossings import crossings
 from bounce_env.survey.follow import CRUSHES, DRAINED, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK

@@ -8,11 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.disturb import place
-from bounce_env.engine.jit import borrow, function, kernel
-from bounce_env.engine.layout import CRUSHED, HELD, OUT, Array, State, Tables, borrow_state, borrow_tables, record
-from bounce_env.engine.loop import DONE, OUT_OF_BUDGET, clear_hits, restart, resume, run
-from bounce_env.engine.view import ball_now
+from bounce_env.engine.compile.jit import borrow, function, kernel
+from bounce_env.engine.events.flights import place
+from bounce_env.engine.events.loop import DONE, OUT_OF_BUDGET, clear_hits, restart, resume, run
+from bounce_env.engine.memory.records import CRUSHED, HELD, OUT, Array, record
+from bounce_env.engine.memory.state import State, Tables, borrow_state, borrow_tables
+from bounce_env.engine.motion.readout import ball_now
 
 # How a ball ends.
 DRAINED, RESTS, ENDLESS, LEFT, STUCK, CRUSHES, RATTLES, PLAYING = 0, 1, 2, 3, 4, 5, 6, 7

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.overlap import cores_at_start, gaps
+from bounce_env.engine.placement import cores_at_start, gaps
 from bounce_env.scene import Element, Scene, Sensor, Wall
 
 MOST_CELLS = 160

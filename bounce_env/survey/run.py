@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.layout import new_state
-from bounce_env.engine.pack import pack
+from bounce_env.engine.memory.state import new_state
+from bounce_env.engine.packing import pack
 from bounce_env.games.episode import FPS
 from bounce_env.games.pace import MAX_EVENTS
 from bounce_env.scene import Bumper, Scene

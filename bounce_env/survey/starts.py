@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.overlap import cores_at_start, gaps
+from bounce_env.engine.placement import cores_at_start, gaps
 from bounce_env.scene import Scene
 from bounce_env.survey.inside import Inside
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env import Ball, Bumper, Scene, Wall
-from bounce_env.engine.overlap import cleared
+from bounce_env.engine.placement import cleared
 
 Floats = npt.NDArray[np.float64]
 

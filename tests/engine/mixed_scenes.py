@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bounce_env import Arc, Ball, Bumper, Field, Scene, Sensor, Wall
-from bounce_env.engine.overlap import cleared
+from bounce_env.engine.placement import cleared
 
 MAX_SPEED = 20.0  # m/s
 

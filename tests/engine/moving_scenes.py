@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bounce_env import Ball, Bumper, Flipper, Paddle, Scene, Wall
-from bounce_env.engine.overlap import apart, cleared, cores_at_start
+from bounce_env.engine.placement import apart, cleared, cores_at_start
 from bounce_env.engine.world import World
 
 MAX_SPEED = 250.0  # m/s, more than any part's surface

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bounce_env import Ball, Scene, Sensor, Wall, World
-from bounce_env.engine.layout import OK, OUT
+from bounce_env.engine.memory.records import OK, OUT
 
 R = 0.125
 FREE = Scene(gravity=(0.0, 0.0), ball=Ball(radius=R), elements=(Wall((-9, -2), (9, -2), name="floor"),))

@@ -8,7 +8,7 @@ from closed_scenes import closed_scene
 from conftest import soak_count
 
 from bounce_env import Ball, Bumper, Paddle, Scene, Sensor, Wall, World, load_scene
-from bounce_env.engine.batch import Worlds
+from bounce_env.engine.world_batch import Worlds
 from bounce_env.scene import Element
 
 PIECES = 256

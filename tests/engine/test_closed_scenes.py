@@ -5,8 +5,8 @@ import pytest
 from closed_scenes import closed_scene
 from conftest import soak_count
 
-from bounce_env.engine.batch import Worlds
-from bounce_env.engine.layout import OK
+from bounce_env.engine.memory.records import OK
+from bounce_env.engine.world_batch import Worlds
 
 BALLS_PER_SCENE = soak_count(100, 1000)
 SECONDS = 10.0

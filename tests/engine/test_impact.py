@@ -9,11 +9,12 @@ from conftest import soak_count
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from bounce_env.engine import arc, impact
-from bounce_env.engine.jit import from_python
+from bounce_env.engine.compile.jit import from_python
+from bounce_env.engine.impact import arc, capsule, circle, line
+from bounce_env.engine.motion import roots
 
-capsule_time, circle_time, face_time = map(from_python, (impact.capsule_time, impact.circle_time, impact.face_time))
-falling_time, straight_circle_time = map(from_python, (impact.falling_time, impact.straight_circle_time))
+capsule_time, circle_time, face_time = map(from_python, (capsule.capsule_time, circle.circle_time, line.face_time))
+falling_time, straight_circle_time = map(from_python, (roots.falling_time, circle.straight_circle_time))
 crossing_time = from_python(arc.crossing_time)
 
 SLACK = 16.0 * 2.0**-52

@@ -2,7 +2,6 @@
 
 import os
 import pickle
-import re
 import shutil
 import subprocess
 import sys
@@ -12,12 +11,11 @@ import numpy as np
 
 import bounce_env
 from bounce_env import Ball, Bumper, Scene, Wall, World
-from bounce_env.engine import entry
 
 PACKAGE = Path(bounce_env.__file__).parent
 RUN = """
 from bounce_env import Scene, Wall, World
-from bounce_env.engine import entry as m
+from bounce_env.engine import world_kernels as m
 w = World(Scene(gravity=(0.0, 0.0), elements=(Wall((0.0, 0.0), (1.0, 0.0)),)))
 w.reset(position=(0.5, 1.0), velocity=(0.0, -1.0))
 w.advance(1.5)
@@ -36,11 +34,11 @@ def run_in(folder: Path) -> list[str]:
 
 
 def test_second_process_compiles_nothing_and_an_edited_helper_is_noticed(tmp_path: Path) -> None:
-    """Numba itself looks at the file of the kernel alone; here an edit three modules away counts."""
+    """Numba itself looks at the file of the kernel alone; here an edit three modules away, in a subfolder, counts."""
     shutil.copytree(PACKAGE, tmp_path / "bounce_env", ignore=shutil.ignore_patterns("__pycache__"))
     assert run_in(tmp_path) == ["0", "1", "1.0"]
     assert run_in(tmp_path) == ["1", "0", "1.0"]
-    law = tmp_path / "bounce_env" / "engine" / "law.py"
+    law = tmp_path / "bounce_env" / "engine" / "contact" / "law.py"
     source = law.read_text()
     assert source.count("uy + (rebound * ny") == 1
     law.write_text(source.replace("uy + (rebound * ny", "uy + (0.5 * rebound * ny"))
@@ -50,23 +48,7 @@ def test_second_process_compiles_nothing_and_an_edited_helper_is_noticed(tmp_pat
         with index.open("rb") as file:
             version = pickle.load(file)
         # What follows the version names a class that there is no longer, as after an upgrade in place.
-        index.write_bytes(pickle.dumps(version) + b"cbounce_env.engine.jit\nGone\n.")
-    assert run_in(tmp_path) == ["0", "1", "0.5"]
-
-
-def test_an_edit_in_a_subfolder_is_noticed(tmp_path: Path) -> None:
-    """Of the engine's, three modules away from the kernel and a folder deeper."""
-    shutil.copytree(PACKAGE, tmp_path / "bounce_env", ignore=shutil.ignore_patterns("__pycache__"))
-    engine = tmp_path / "bounce_env" / "engine"
-    (engine / "deep").mkdir()
-    (engine / "deep" / "__init__.py").write_text("")
-    law = engine / "deep" / "law.py"
-    (engine / "law.py").rename(law)
-    names = ", ".join(re.findall(r"^def (\w+)", law.read_text(), re.MULTILINE))
-    (engine / "law.py").write_text(f"from bounce_env.engine.deep.law import {names}\n")
-    assert run_in(tmp_path) == ["0", "1", "1.0"]
-    assert run_in(tmp_path) == ["1", "0", "1.0"]
-    law.write_text(law.read_text().replace("uy + (rebound * ny", "uy + (0.5 * rebound * ny"))
+        index.write_bytes(pickle.dumps(version) + b"cbounce_env.engine.compile.jit\nGone\n.")
     assert run_in(tmp_path) == ["0", "1", "0.5"]
 
 
@@ -90,7 +72,7 @@ def test_scenes_of_one_feature_set_share_a_kernel() -> None:
         world.reset(position=(0.5, 1.0), velocity=(0.0, 0.0))
         world.advance(0.5)
         assert np.isfinite(world.position).all()
-        return len(entry.advance_to.signatures)  # type: ignore[attr-defined]
+        return len(world_kernels.advance_to.signatures)  # type: ignore[attr-defined]
 
     first = signatures_after([*walls[:1], *bumpers[:1]])
     assert signatures_after([*walls, *bumpers]) == first

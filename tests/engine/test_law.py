@@ -6,8 +6,8 @@ from conftest import soak_count
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bounce_env.engine import law
-from bounce_env.engine.jit import from_python
+from bounce_env.engine.compile.jit import from_python
+from bounce_env.engine.contact import law
 
 bounce, capped = from_python(law.bounce), from_python(law.capped)
 

@@ -9,9 +9,9 @@ from conftest import soak_count
 from mixed_scenes import mixed_scene, start_in
 
 from bounce_env import Field, Scene
-from bounce_env.engine.batch import Worlds
-from bounce_env.engine.layout import BUDGET, OK
-from bounce_env.engine.overlap import gaps
+from bounce_env.engine.memory.records import BUDGET, OK
+from bounce_env.engine.placement import gaps
+from bounce_env.engine.world_batch import Worlds
 
 SECONDS = 20.0
 EVENTS = 400_000

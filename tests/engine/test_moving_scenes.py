@@ -8,8 +8,8 @@ from moving_scenes import MAX_SPEED, command_at_random, moving_scene, start
 from stability_case import new_world
 
 from bounce_env import Scene, Wall
-from bounce_env.engine.layout import BUDGET, CRUSHED, OK
-from bounce_env.engine.overlap import gaps
+from bounce_env.engine.memory.records import BUDGET, CRUSHED, OK
+from bounce_env.engine.placement import gaps
 from bounce_env.engine.world import World
 
 SECONDS = 20.0

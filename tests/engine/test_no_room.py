@@ -7,7 +7,7 @@ import pytest
 from stability_case import new_world
 
 from bounce_env import Ball, Bumper, Scene, Wall
-from bounce_env.engine.layout import CRUSHED, OK
+from bounce_env.engine.memory.records import CRUSHED, OK
 from bounce_env.engine.world import World
 
 R, CAP = 0.125, 50.0

@@ -8,8 +8,9 @@ from conftest import soak_count
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bounce_env.engine import instant, trig
-from bounce_env.engine.jit import from_python
+from bounce_env.engine.compile.jit import from_python
+from bounce_env.engine.motion import instant
+from bounce_env.engine.motion import sincos as trig
 from bounce_env.games import streams
 from bounce_env.games.streams import EPISODES, LAUNCHES
 

@@ -10,10 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from conftest import soak_count
 
-from bounce_env.engine import impact, stretching, turning
-from bounce_env.engine.jit import from_python
+from bounce_env.engine.compile.jit import from_python
+from bounce_env.engine.impact import capsule
+from bounce_env.engine.impact import rotating_capsule as turning
+from bounce_env.engine.impact import stretching_wall as stretching
 
-turning_time, capsule_time = from_python(turning.turning_time), from_python(impact.capsule_time)
+turning_time, capsule_time = from_python(turning.turning_time), from_python(capsule.capsule_time)
 stretching_time = from_python(stretching.stretching_time)
 
 SAMPLES = 4001

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bounce_env import Ball, Bumper, Paddle, Scene, Sensor, Wall, World
-from bounce_env.engine.layout import BOUNCE, BUDGET, CROSSING, OK, OUT, PART_STOPS
+from bounce_env.engine.memory.records import BOUNCE, BUDGET, CROSSING, OK, OUT, PART_STOPS
 
 BOX = (
     Wall((0.0, 0.0), (1.0, 0.0), name="floor"),

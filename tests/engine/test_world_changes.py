@@ -7,7 +7,7 @@ import pytest
 from stability_case import new_world
 
 from bounce_env import Arc, Ball, Bumper, Paddle, Scene, Sensor, Wall, World
-from bounce_env.engine.layout import CROSSING
+from bounce_env.engine.memory.records import CROSSING
 
 ROOM = Scene(
     gravity=(0.0, -1.0),

@@ -11,7 +11,7 @@ from rollouts import PADDLE, assert_same, make_vec, scripted
 
 from bounce_env import Bumper, load_scene
 from bounce_env.cards import PaddleEnv
-from bounce_env.engine.pack import pack
+from bounce_env.engine.packing import pack
 from bounce_env.games.levels import GAP, MOVING_FROM, RAIL, SPEED
 from bounce_env.games.options import PaddleOptions
 from bounce_env.games.paddle import PaddleGame

@@ -15,7 +15,7 @@ from moving_oracle import MovingOracle
 from mpmath import mpf
 from stability_case import new_world
 
-from bounce_env.engine.overlap import apart, cleared, cores_at_start
+from bounce_env.engine.placement import apart, cleared, cores_at_start
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Wall
 
 SECONDS = 2.0

@@ -21,7 +21,7 @@ from pixel_scenes import (
     table_renderer,
 )
 
-from bounce_env.engine.overlap import cores_at_start
+from bounce_env.engine.placement import cores_at_start
 from bounce_env.render import Picture, Renderer, painter
 from bounce_env.render.looks import Stroke
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene

@@ -7,7 +7,7 @@ import pytest
 from conftest import soak_count
 
 from bounce_env import World, load_scene
-from bounce_env.engine.layout import OUT
+from bounce_env.engine.memory.records import OUT
 
 BOUNCE, BEGINS, ENDS, SENSOR = range(4)
 

@@ -18,7 +18,7 @@ from unittest import mock
 import numpy as np
 
 from bounce_env.engine import world as engine
-from bounce_env.engine.layout import BUDGET, CRUSHED, OK, OUT
+from bounce_env.engine.memory.records import BUDGET, CRUSHED, OK, OUT
 from bounce_env.engine.world import World
 from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tables import CUP, SOUND, box, table
 
-from bounce_env.engine.overlap import cores_at_start, gaps
+from bounce_env.engine.placement import cores_at_start, gaps
 from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, load_scene
 from bounce_env.survey.inside import inside_of
 from bounce_env.survey.places import clusters

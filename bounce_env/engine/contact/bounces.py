@@ -1,0 +1,261 @@
+"""What happens at the instant of a hit: the ball is put on the surface, and all that it touches is bounced from.
+
+Of several elements touched at once the one closed on fastest is bounced from first, ties by element order, until none
+is closed on. So a corner is right from either side, and mirror images stay mirror images. What the ball does then
+(whether it flies, slides or rests) is decided in `engine.contact.resolve`.
+"""
+
+from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.contact.law import bounce, capped
+from bounce_env.engine.contact.restitution import (
+    along_speed,
+    closing_speed,
+    is_soft,
+    press_of,
+    push_off,
+    rolling_speed,
+    slow_speed,
+    towards,
+)
+from bounce_env.engine.contact.squeeze import is_crushed, note_strike
+from bounce_env.engine.memory.ledger import count_hit, log
+from bounce_env.engine.memory.records import BOUNCE, CRUSHED
+from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.motion.instant import before, later
+from bounce_env.engine.tolerances import ALIGNED, BOUNCES_AT_ONE_INSTANT, CORNER, OPPOSED, ULPS_OF_SPEED
+
+
+@function
+def take_vague(ball: Record, touches: Table, w: int) -> None:
+    """Take from the velocity what closes on a surface only since another ball's push missed its direction."""
+    for i in range(ball.touched):
+        touch = touches[w, i]
+        closing = closing_speed(ball, touch)
+        if 0.0 < closing <= ball.vague:
+            push_off(ball, touch, closing)
+    ball.vague = 0.0
+
+
+@function
+def take_soft(ball: Record, touches: Table, w: int, extent: float) -> None:
+    """Take from the velocity what leaves a surface that the ball is pressed on in a hop that rises above no tolerance.
+
+    Such a hop may last less than the clock can tell: the ball would be told of its end for ever.
+    """
+    for i in range(ball.touched):
+        touch = touches[w, i]
+        closing, press = closing_speed(ball, touch), press_of(ball, touch)
+        if closing < 0.0 < press and is_soft(-closing, press, extent):
+            push_off(ball, touch, closing)
+
+
+@function
+def fastest_closing(ball: Record, touches: Table, w: int) -> tuple[int, float]:
+    """Of the touched surfaces the one closed on fastest, ties by element: (index, speed), -1 if none is."""
+    best, index, element = 0.0, -1, -1
+    for i in range(ball.touched):
+        touch = touches[w, i]
+        closing = closing_speed(ball, touch)
+        slow = slow_speed(ball, touch)
+        if closing <= slow:
+            continue
+        # Alike but for rounding is a tie.
+        if closing > best + slow or (closing >= best - slow and touch.element < element):
+            best, index, element = closing, i, touch.element
+    return index, best
+
+
+@function
+def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table) -> tuple[int, int, float, float]:
+    """Bounce from everything that the ball touches and closes on, fastest first.
+
+    Where bounces in a corner are taken to be over, what closes is taken from the velocity. Returns (single, corner, vx,
+    vy): the touched surface that was bounced from if it was just one, without a kick; the one that led to the end of
+    bounces in a corner; -1 where there is none; and the velocity [m/s] before the latter, which is not yet logged.
+    """
+    ball = state.balls[w, k]
+    noise = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
+    for _ in range(BOUNCES_AT_ONE_INSTANT):
+        i, closing = fastest_closing(ball, state.touches, w)
+        if i < 0:
+            return -1, -1, ball.vx, ball.vy
+        if ball.touched > 1 and _is_damped(state, tables, w, k, i, closing):
+            break
+        kicked = _bounce_from(state, tables, w, k, i, closing, noise, ledger)
+        if tables.parts is not None and is_crushed(ball, state.touches[w, i], tables.scenes[state.worlds[w].scene]):
+            ball.status = CRUSHED
+            return -1, -1, ball.vx, ball.vy
+        if ball.touched == 1:
+            return (-1 if kicked else i), -1, ball.vx, ball.vy
+    i, _ = fastest_closing(ball, state.touches, w)
+    vx, vy = ball.vx, ball.vy
+    if i >= 0 and not _project(ball, state.touches, w, i):
+        ball.status, ball.vx, ball.vy = CRUSHED, vx, vy
+    return -1, i, vx, vy
+
+
+@function
+def _is_damped(state: State, tables: Tables, w: int, k: int, i: int, closing: float) -> bool:
+    """Whether a ball in a corner comes so slowly that its bounces there are taken to be over."""
+    ball, world = state.balls[w, k], state.worlds[w]
+    head = tables.scenes[world.scene]
+    if tables.gravity is None:
+        return False
+    touch = state.touches[w, i]
+    material = tables.elements[world.scene, touch.element]
+    press = press_of(ball, touch)
+    if touch.moves or towards(touch) != 0.0:
+        return False
+    if press == 0.0 or (material.kick > 0.0 and closing > material.kick_threshold):
+        return False
+    return closing < head.rest_speed or is_soft(closing, press, CORNER * head.extent)
+
+
+@function
+def _bounce_from(
+    state: State, tables: Tables, w: int, k: int, i: int, closing: float, noise: float, ledger: Table
+) -> bool:
+    """Bounce from one touched surface; returns whether it gave a kick. A speed up to `noise` [m/s] left is none."""
+    ball, world, touch = state.balls[w, k], state.worlds[w], state.touches[w, i]
+    head, material = tables.scenes[world.scene], tables.elements[world.scene, touch.element]
+    rebound, f = material.b * closing, material.f
+    if touch.moves and closing <= touch.least:
+        rebound, f = max(rebound, touch.least), (1.0 if head.rest_speed > 0.0 and f > 0.0 else f)
+    elif tables.gravity is not None or touch.bend < 0.0:
+        rebound, f = _softened(ball, touch, head, material, closing, rebound, f)
+    kicked = material.kick > 0.0 and closing > material.kick_threshold
+    if kicked and _is_ready(state.cooling, ball, w, touch.element, material.cooldown):
+        rebound += material.kick
+    else:
+        kicked = False
+    if ball.rolling != touch.element:
+        ball.rolling = -1
+    vx0, vy0 = ball.vx, ball.vy
+    vx, vy = bounce(vx0, vy0, touch.nx, touch.ny, touch.ux, touch.uy, rebound, f)
+    if abs(vx) + abs(vy) <= noise:
+        # All that the bounces at this instant have left is rounding, and would go to and fro in a corner.
+        vx, vy = 0.0, 0.0
+    ball.vx, ball.vy, over = capped(vx, vy, touch.nx, touch.ny, touch.ux, touch.uy, head.max_speed)
+    world.speed_capped += over
+    count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    return kicked
+
+
+@function
+def _softened(
+    ball: Record, touch: Record, head: Record, material: Record, closing: float, rebound: float, f: float
+) -> tuple[float, float]:
+    """Rebound [m/s] and friction where the ball is pressed on the surface: absorbed, or on a curve the smallest one."""
+    press = press_of(ball, touch)
+    if press == 0.0:
+        return rebound, f
+    rolling = touch.bend != 0.0 and closing <= 1.5 * rolling_speed(ball, touch, press, head.extent)
+    if closing < head.rest_speed or (rolling and head.rest_speed > 0.0):
+        return 0.0, (1.0 if f > 0.0 else 0.0)
+    if touch.bend == 0.0 and material.b == 1.0 and is_soft(closing, press, head.extent):
+        # Hops that lose nothing have no end, and these show in no place of the ball: it slides.
+        return 0.0, f
+    # Where nothing is lost bounces do not die away: only of a ball that rolls are they the smallest there are.
+    lossless = material.b >= 1.0 and ball.rolling != touch.element
+    if touch.bend == 0.0 or lossless:
+        return rebound, f
+    smallest = rolling_speed(ball, touch, press, head.extent)
+    holds = f == 0.0 or (f < 1.0 and head.rest_speed == 0.0)
+    if rebound >= smallest or (rebound == 0.0 and holds):
+        return rebound, f
+    if is_soft(closing, press, head.extent):
+        return 0.0, f
+    if material.b < 1.0 and abs(along_speed(ball, touch)) <= 2.0 * smallest:
+        # Slow on the curve: let the bounces die away, so that a ball between several surfaces comes to touch them.
+        smallest = min(smallest, 0.5 * closing)
+    return max(rebound, smallest), f
+
+
+@function
+def _is_ready(cooling: Table, ball: Record, w: int, element: int, cooldown: float) -> bool:
+    """Whether an element gives a kick now; if so it begins to cool down."""
+    if cooling is None:
+        return True
+    cool = cooling[w, element]
+    if before(ball.hi, ball.lo, cool.hi, cool.lo):
+        return False
+    if cooldown > 0.0:
+        cool.hi, cool.lo = later(ball.hi, ball.lo, cooldown)
+    return True
+
+
+@function
+def _project(ball: Record, touches: Table, w: int, first: int) -> bool:
+    """Take from the velocity what closes on any touched surface: along one of them where the others allow, else all.
+
+    The one closed on fastest (`first`) is tried first. Returns False where a part closes on the ball and nothing lets
+    it get away.
+    """
+    vx, vy = ball.vx, ball.vy
+    for n in range(ball.touched):
+        touch = touches[w, (first + n) % ball.touched]
+        ball.vx, ball.vy = vx, vy
+        closing = closing_speed(ball, touch)
+        push_off(ball, touch, closing)
+        if closing > 0.0 and _is_allowed(ball, touches, w, vx, vy):
+            rest = closing_speed(ball, touch)
+            if rest > slow_speed(ball, touch):
+                # Next to the speed that is left, the rounding of the old one would be another hit.
+                push_off(ball, touch, rest)
+            return True
+    ball.vx, ball.vy = touches[w, first].ux, touches[w, first].uy
+    striker = _striker(ball, touches, w)
+    if striker < 0:
+        if not _is_allowed(ball, touches, w, vx, vy):
+            # Friction drives it in between: nothing comes towards the ball, so that it may stand.
+            ball.vx, ball.vy = 0.0, 0.0
+        return True
+    for i in range(ball.touched):
+        for j in range(i):
+            if _squeeze_out(ball, touches[w, i], touches[w, j]) and _is_allowed(ball, touches, w, vx, vy):
+                return True
+    note_strike(ball, touches[w, striker])
+    return False
+
+
+@function
+def _is_allowed(ball: Record, touches: Table, w: int, vx: float, vy: float) -> bool:
+    """Whether a ball of velocity (vx, vy) [m/s] before closes on nothing that it touches now."""
+    allowed = True
+    for j in range(ball.touched):
+        # Seen from the velocity that the ball had: what is left of it may be all rounding.
+        noise = slow_speed(ball, touches[w, j]) + ULPS_OF_SPEED * (abs(vx) + abs(vy))
+        allowed = allowed and closing_speed(ball, touches[w, j]) <= noise
+    return allowed
+
+
+@function
+def _striker(ball: Record, touches: Table, w: int) -> int:
+    """The touched part that moves fastest towards the ball; -1 if none does."""
+    best, index = 0.0, -1
+    for i in range(ball.touched):
+        if towards(touches[w, i]) > best:
+            best, index = towards(touches[w, i]), i
+    return index
+
+
+@function
+def _squeeze_out(ball: Record, one: Record, other: Record) -> bool:
+    """Let the ball keep just ahead of two surfaces, along both; False where they oppose each other too much for it."""
+    turn = one.nx * other.ny - one.ny * other.nx
+    if one.nx * other.nx + one.ny * other.ny < -OPPOSED or abs(turn) <= ALIGNED:
+        return False
+    a, b = towards(one), towards(other)
+    ball.vx, ball.vy = (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
+    return True
+
+
+@function
+def count_bounce(state: State, w: int, k: int, touch: Record, vx0: float, vy0: float, ledger: Table) -> None:
+    """Count a bounce from a touched surface, and log it."""
+    state.worlds[w].bounces += 1
+    count_hit(state, w, touch.element)
+    log(
+        ledger, state.worlds[w], state.balls[w, k], k, touch.element, BOUNCE,
+        touch.nx, touch.ny, vx0, vy0, touch.ux, touch.uy,
+    )  # fmt: skip

@@ -1,0 +1,105 @@
+"""Balls that hit each other: what comes of it."""
+
+import math
+
+from bounce_env.engine.compile.jit import Record, Table, function, routine
+from bounce_env.engine.contact.arrival import end_flight
+from bounce_env.engine.contact.jams import are_stuck, count_meeting, have_no_room, note_speed, stop
+from bounce_env.engine.contact.law import capped
+from bounce_env.engine.contact.squeeze import take_opposed
+from bounce_env.engine.detect.pairs import pair_noise, plan_pairs, weight_of
+from bounce_env.engine.detect.schedule import resolve_next
+from bounce_env.engine.memory.ledger import log
+from bounce_env.engine.memory.lookup import pull
+from bounce_env.engine.memory.records import BOUNCE, CRUSHED
+from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.motion.instant import since
+from bounce_env.engine.tolerances import PRESSING, ROLLING, ULPS_OF_SPEED
+
+
+@routine
+def collide(
+    state: State, tables: Tables, pairs: Table, w: int, k: int, j: int, hi: float, lo: float, ledger: Table
+) -> None:
+    """Let balls `k` > `j` hit each other at the instant (hi, lo); both then bounce from what else they touch.
+
+    Equal masses exchange (1 + b^2) / 2 of the speed at which they close; friction does not act. A ball that lies on
+    another one leaves it with a smallest rebound, as it would a curve.
+    """
+    if pairs is None:  # which compiles it away for one ball
+        return
+    one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
+    head = tables.scenes[world.scene]
+    ax, ay = pull(tables.gravity, one)
+    bx, by = pull(tables.gravity, other)
+    end_flight(one, tables, world.scene, ax, ay, since(hi, lo, one.hi, one.lo), hi, lo)
+    end_flight(other, tables, world.scene, bx, by, since(hi, lo, other.hi, other.lo), hi, lo)
+    dx, dy = one.x - other.x, one.y - other.y
+    distance = math.sqrt(dx * dx + dy * dy)
+    nx, ny = dx / distance, dy / distance
+    apart = 0.5 * (2.0 * head.ball_radius - distance)
+    one.x, one.y = one.x + apart * nx, one.y + apart * ny
+    other.x, other.y = other.x - apart * nx, other.y - apart * ny
+    pair = pairs[w, k, j]
+    count_meeting(world, pair, one, other, head.extent, hi, lo)
+    _exchange(state, tables, w, k, j, nx, ny, distance, have_no_room(world, pair), ledger)
+    if are_stuck(world, pair, one, other):
+        stop(state, tables, w, k, j, nx, ny, ledger)
+        stop(state, tables, w, j, k, -nx, -ny, ledger)
+    note_speed(world, one, other)
+    for ball in (one, other):
+        if ball.status != CRUSHED:
+            resolve_next(ball)
+    plan_pairs(state, tables, pairs, w, k)
+    plan_pairs(state, tables, pairs, w, j)
+
+
+@function
+def _exchange(
+    state: State, tables: Tables, w: int, k: int, j: int, nx: float, ny: float, distance: float, dead: bool,
+    ledger: Table,
+) -> None:  # fmt: skip
+    """The bounce of ball `k` and ball `j`, whose centres are `distance` [m] apart along (nx, ny); dead: without rebound
+    but the smallest.
+    """
+    one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
+    head = tables.scenes[world.scene]
+    closing = -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny)
+    noise = max(pair_noise(one, other, one.vx, one.vy, other.vx, other.vy, head), ULPS_OF_SPEED * world.meet_speed)
+    least = _least_rebound(one, other, nx, ny, distance, head)
+    if least == 0.0 and closing <= 0.0:
+        return
+    vx, vy, ux, uy = one.vx, one.vy, other.vx, other.vy
+    # What is left of faster hits at this instant has no rebound: in between others it would go to and fro for ever.
+    gain = closing + max(0.0 if dead or closing <= noise else head.ball_b * head.ball_b * closing, least)
+    share = 1.0 if other.status == CRUSHED else (0.0 if one.status == CRUSHED else 0.5)
+    # A small hop does not bounce the ball from what else it touches.
+    one.vague = other.vague = gain if closing <= noise else gain * (one.slack + other.slack) / distance
+    one.vx, one.vy = vx + share * gain * nx, vy + share * gain * ny
+    other.vx, other.vy = ux - (1.0 - share) * gain * nx, uy - (1.0 - share) * gain * ny
+    # A ball may be crushed against another one, too.
+    take_opposed(one, head, nx, ny)
+    take_opposed(other, head, -nx, -ny)
+    _cap(one, other, nx, ny, head.max_speed, world)
+    _cap(other, one, -nx, -ny, head.max_speed, world)
+    world.bounces += 1
+    elements = head.elements
+    log(ledger, world, one, k, elements + j, BOUNCE, nx, ny, vx, vy, ux, uy)
+    log(ledger, world, other, j, elements + k, BOUNCE, -nx, -ny, ux, uy, vx, vy)
+
+
+@function
+def _least_rebound(one: Record, other: Record, nx: float, ny: float, distance: float, head: Record) -> float:
+    """The slowest [m/s] that one of two balls leaves the other one which it is pressed on; 0 where it is not."""
+    g = weight_of(one, other)
+    along = (one.vx - other.vx) * ny - (one.vy - other.vy) * nx
+    turn = along * along / distance  # what it takes to keep to the other one
+    if (one.ax - other.ax) * nx + (one.ay - other.ay) * ny + turn >= -PRESSING * (g + turn):
+        return 0.0
+    return max(head.rest_speed, ROLLING * math.sqrt(g * 2.0 * head.ball_radius))
+
+
+@function
+def _cap(ball: Record, other: Record, nx: float, ny: float, max_speed: float, world: Record) -> None:
+    ball.vx, ball.vy, over = capped(ball.vx, ball.vy, nx, ny, other.vx, other.vy, max_speed)
+    world.speed_capped += over

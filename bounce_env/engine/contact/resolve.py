@@ -1,0 +1,234 @@
+"""What a ball does at an instant: it bounces from all that it touches, then it flies, slides or rests.
+
+Ever smaller bounces that lead to a contact with a straight surface are summed in closed form (the geometric series of
+anchors/numerics.md, check 2).
+"""
+
+import math
+
+from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.contact.bounces import bounce_from_all, count_bounce, take_soft, take_vague
+from bounce_env.engine.contact.hops import hop_on
+from bounce_env.engine.contact.resting import bear, find_contact, is_slow
+from bounce_env.engine.contact.restitution import closing_speed, is_soft, press_of, towards
+from bounce_env.engine.contact.sides import face_crossings
+from bounce_env.engine.contact.touching import collect_touches, keep_outside
+from bounce_env.engine.detect.pairs import plan_pairs
+from bounce_env.engine.detect.schedule import plan_rest, plan_standing
+from bounce_env.engine.memory.ledger import log
+from bounce_env.engine.memory.records import (
+    CONTACT_BEGINS,
+    CONTACT_ENDS,
+    CRUSHED,
+    FLYING,
+    HELD,
+    JAMMED,
+    NEXT_PART,
+    RESOLVE,
+    RIDING,
+    SETTLES,
+)
+from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.tolerances import (
+    BOUNCES_AFTER_STANDING,
+    BOUNCES_BEFORE_STANDING,
+    BOUNCES_WITHOUT_ROOM,
+    CLEARANCE,
+    CORNER,
+    STANDING,
+    ULPS_OF_LENGTH,
+    WEIGHTLESS,
+)
+
+
+@function
+def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger: Table) -> None:
+    """Bounce a ball from all that it touches, decide what it does next, and plan that.
+
+    at_once: whether its flight has ended where it began, by something that it was to hit.
+    """
+    ball = state.balls[w, k]
+    if abs(ball.vx) + abs(ball.vy) < STANDING:
+        ball.vx, ball.vy = 0.0, 0.0
+    extent = tables.scenes[state.worlds[w].scene].extent
+    if ball.confined > BOUNCES_WITHOUT_ROOM or (tables.gravity is not None and is_slow(ball, extent)):
+        # Between several surfaces the last bounces go to and fro: what lies within their reach counts as touched.
+        ball.slack = max(ball.slack, CORNER * ULPS_OF_LENGTH * extent)
+    contact, support, settling = ball.contact, ball.support, ball.settling
+    ball.settling = 0
+    collect_touches(state, tables, w, k)
+    if tables.parts is not None:
+        keep_outside(ball, state.touches, w)
+    if settling != JAMMED and _is_stuck(ball, state.touches, w, extent):
+        _stop(state, w, k, ledger)
+        settling = JAMMED
+    if settling == JAMMED:
+        duration = _stand(state, w, k, extent, ledger)
+    else:
+        if settling == SETTLES:
+            contact, support = FLYING, -1  # that contact had not begun yet
+        duration = _bounce_and_go(state, tables, w, k, contact, support, at_once, ledger)
+        if ball.status == CRUSHED:
+            return
+    if duration >= 0.0:
+        ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
+    plan_rest(state, tables, w, k)
+    plan_pairs(state, tables, state.pairs, w, k)
+
+
+@function
+def _is_stuck(ball: Record, touches: Table, w: int, extent: float) -> bool:
+    """Whether a ball keeps bouncing without room, and none of the surfaces comes nearer while it would stand."""
+    if ball.touched == 0 or ball.confined <= BOUNCES_BEFORE_STANDING:
+        return False
+    seconds = _standing_time(ball, extent)
+    for i in range(ball.touched):
+        closing = towards(touches[w, i])
+        if closing > 0.0 and not closing * seconds <= ball.slack:
+            return False
+    return True
+
+
+@function
+def _stop(state: State, w: int, k: int, ledger: Table) -> None:
+    """Stop a ball that keeps bouncing between surfaces which leave it no room."""
+    ball = state.balls[w, k]
+    vx, vy = ball.vx, ball.vy
+    ball.vx, ball.vy = 0.0, 0.0
+    ball.confined = BOUNCES_BEFORE_STANDING - BOUNCES_AFTER_STANDING
+    count_bounce(state, w, k, state.touches[w, 0], vx, vy, ledger)
+
+
+@function
+def _standing_time(ball: Record, extent: float) -> float:
+    """How long [s] falling by a clearance takes."""
+    g = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+    return math.sqrt(2.0 * CLEARANCE * extent / g) if g > WEIGHTLESS else math.inf
+
+
+@function
+def _stand(state: State, w: int, k: int, extent: float, ledger: Table) -> float:
+    """Let a ball that is jammed stand for as long as falling by a clearance would take; returns that duration [s]."""
+    ball = state.balls[w, k]
+    if ball.support >= 0:
+        _log_end(state, w, k, ball.support, ball.vx, ball.vy, ledger)
+    ball.contact, ball.rides, ball.support, ball.ax, ball.ay = HELD, -1, -1, 0.0, 0.0
+    return _standing_time(ball, extent)
+
+
+@function
+def _bounce_and_go(
+    state: State, tables: Tables, w: int, k: int, contact: int, support: int, at_once: bool, ledger: Table
+) -> float:
+    """Bounce a ball from all that it touches, let it fly, slide or rest, and search what stands in its way.
+
+    contact, support: those that it came with.
+    Returns after how long [s] it is to be looked at again because its last bounces are summed up to then, otherwise -1.
+    """
+    ball, bounces = state.balls[w, k], state.worlds[w].bounces
+    if ball.vague > 0.0:
+        take_vague(ball, state.touches, w)
+    if at_once and tables.gravity is not None:
+        take_soft(ball, state.touches, w, tables.scenes[state.worlds[w].scene].extent)
+    single, corner, vx0, vy0 = bounce_from_all(state, tables, w, k, ledger)
+    if ball.status == CRUSHED:
+        return -1.0
+    _let_go(ball)
+    if tables.gravity is not None:
+        # Told at once of a hit of something that it does not close on, a ball that rides on a part, or slides into one,
+        # would be so for ever: it hops off.
+        slides_in = contact >= 0 and ball.next_kind == NEXT_PART
+        again = (contact == RIDING or slides_in) and at_once and state.worlds[w].bounces == bounces
+        i = _change_contact(state, tables, w, k, contact, support, again, vx0, vy0, ledger)
+        corner = corner if i < 0 else -1
+    if corner >= 0:
+        count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
+    if ball.contact == FLYING:
+        hop_on(state, tables, w, k, at_once, bounces, ledger)
+    face_crossings(state, tables, w, k)
+    vx, vy, duration = ball.vx, ball.vy, -1.0
+    if tables.gravity is not None and single >= 0 and ball.contact == FLYING:
+        duration = _settle(state, tables, w, k, single)
+    for _ in range(2):
+        plan_standing(state, tables, w, k)
+        if duration < 0.0 or ball.hit_after > duration:
+            break
+        # Something comes before the bounces are over: they go on one by one.
+        _let_go(ball)
+        ball.vx, ball.vy, ball.settling, duration = vx, vy, 0, -1.0
+    return duration
+
+
+@function
+def _change_contact(
+    state: State, tables: Tables, w: int, k: int, contact: int, support: int, off: bool, vx: float, vy: float,
+    ledger: Table,
+) -> int:  # fmt: skip
+    """Find the ball's contact, if it is not to fly `off`; log the end of the one that it had, the beginning of another.
+
+    (vx, vy): its velocity [m/s] before. Returns which touched surface a new contact is with, -1 if there is none.
+    """
+    ball = state.balls[w, k]
+    i = -1 if off else find_contact(state, tables, w, k)
+    stopped = ball.contact == HELD and (vx != ball.vx or vy != ball.vy)  # held again, after a push
+    if ball.contact == contact and ball.support == support and not stopped:
+        return -1
+    if support >= 0:
+        _log_end(state, w, k, support, vx, vy, ledger)
+    if i >= 0:
+        touch = state.touches[w, i]
+        ball.nx, ball.ny = touch.nx, touch.ny
+        log(
+            ledger, state.worlds[w], ball, k, touch.element, CONTACT_BEGINS,
+            touch.nx, touch.ny, vx, vy, touch.ux, touch.uy,
+        )  # fmt: skip
+    return i
+
+
+@function
+def _let_go(ball: Record) -> None:
+    ball.contact, ball.rides, ball.support = FLYING, -1, -1
+    ball.ax, ball.ay = ball.gx, ball.gy
+
+
+@function
+def _settle(state: State, tables: Tables, w: int, k: int, single: int) -> float:
+    """Sum the bounces still to come on a wall, if they rise above no tolerance; returns how long they take [s], or -1.
+
+    With hops of durations tau, b tau, b^2 tau ... they end after tau / (1 - b); meanwhile the ball is on the wall. With
+    f = 1 it slides as ever. With f < 1 it comes to stand; until then it is shown in uniform motion to where.
+    """
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head, touch = tables.scenes[scene], state.touches[w, single]
+    material = tables.elements[scene, touch.element]
+    press, rebound, b, f = press_of(ball, touch), -closing_speed(ball, touch), material.b, material.f
+    if touch.bend != 0.0 or touch.moves or head.rest_speed > 0.0 or not 0.0 < b < 1.0:
+        return -1.0
+    if press == 0.0 or not is_soft(rebound, press, head.extent):
+        return -1.0
+    ux, uy = touch.ny, -touch.nx
+    hop = 2.0 * rebound / press
+    duration = hop / (1.0 - b)
+    speed = (ball.vx - touch.ux) * ux + (ball.vy - touch.uy) * uy
+    pull = ball.gx * ux + ball.gy * uy
+    if f < 1.0:
+        way = speed * hop / (1.0 - f * b)
+        way += pull * hop * hop * (1.0 + f * b) / (2.0 * (1.0 - f * b) * (1.0 - b * b))
+        speed, pull = way / duration, 0.0
+    ball.vx, ball.vy, ball.ax, ball.ay = touch.ux + speed * ux, touch.uy + speed * uy, pull * ux, pull * uy
+    bear(ball, touch)
+    ball.nx, ball.ny, ball.settling = touch.nx, touch.ny, SETTLES
+    return duration
+
+
+@function
+def _log_end(state: State, w: int, k: int, support: int, vx: float, vy: float, ledger: Table) -> None:
+    """The end of a contact changes no velocity: what does so has rows of its own."""
+    ball = state.balls[w, k]
+    new_vx, new_vy, ux, uy = ball.vx, ball.vy, 0.0, 0.0
+    for i in range(ball.touched):
+        if state.touches[w, i].element == support:
+            ux, uy = state.touches[w, i].ux, state.touches[w, i].uy
+    ball.vx, ball.vy = vx, vy
+    log(ledger, state.worlds[w], ball, k, support, CONTACT_ENDS, ball.nx, ball.ny, vx, vy, ux, uy)
+    ball.vx, ball.vy = new_vx, new_vy

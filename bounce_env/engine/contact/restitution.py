@@ -1,0 +1,82 @@
+"""How a ball and a surface that it touches come together: how fast, how hard pressed, and what is too slow to count."""
+
+import math
+
+from bounce_env.engine.compile.jit import Record, function
+from bounce_env.engine.tolerances import PRESSING, ROLLING, ULPS_OF_LENGTH, ULPS_OF_SPEED
+
+
+@function
+def slow_speed(ball: Record, touch: Record) -> float:
+    """Closing slower than this [m/s] is no hit: the rounding of the ball's velocity, and of a curve's normal."""
+    speed = abs(ball.vx) + abs(ball.vy) + (abs(touch.ux) + abs(touch.uy))
+    return (ULPS_OF_SPEED + ball.slack * abs(touch.bend)) * speed
+
+
+@function
+def closing_speed(ball: Record, touch: Record) -> float:
+    """How fast [m/s] the ball and a surface that it touches come closer."""
+    return -((ball.vx - touch.ux) * touch.nx + (ball.vy - touch.uy) * touch.ny)
+
+
+@function
+def along_speed(ball: Record, touch: Record) -> float:
+    """Speed [m/s] of the ball along a surface that it touches, counter-clockwise about it positive."""
+    return (ball.vy - touch.uy) * touch.nx - (ball.vx - touch.ux) * touch.ny
+
+
+@function
+def towards(touch: Record) -> float:
+    """How fast [m/s] a touched surface itself moves towards the ball; 0 where it stands, or slides along it."""
+    speed = touch.ux * touch.nx + touch.uy * touch.ny
+    return speed if abs(speed) > ULPS_OF_SPEED * (abs(touch.ux) + abs(touch.uy)) else 0.0
+
+
+@function
+def stands(touch: Record) -> bool:
+    """Whether a touched surface does not move now."""
+    return not touch.moves and touch.ux == 0.0 and touch.uy == 0.0
+
+
+@function
+def press_of(ball: Record, touch: Record) -> float:
+    """Acceleration [m/s^2] with which the ball is pressed on a surface that it moves along; 0 where it is not.
+
+    Gravity's share, and on a curve what it takes to follow it.
+    """
+    along = along_speed(ball, touch)
+    turn = touch.bend * along * along
+    press = -(ball.gx * touch.nx + ball.gy * touch.ny) - turn
+    noise = PRESSING * (abs(ball.gx) + abs(ball.gy) + abs(turn))
+    return press if press > noise else 0.0
+
+
+@function
+def is_soft(closing: float, press: float, extent: float) -> bool:
+    """Whether a hop at this speed [m/s] does not rise above the tolerance of lengths."""
+    return closing <= soft_speed(press, extent)
+
+
+@function
+def soft_speed(press: float, extent: float) -> float:
+    """Speed [m/s] of a hop that rises by the tolerance of lengths."""
+    return math.sqrt(2.0 * press * (ULPS_OF_LENGTH * extent))
+
+
+@function
+def rolling_speed(ball: Record, touch: Record, press: float, extent: float) -> float:
+    """Speed [m/s] of the small hops in which a ball rolls on a curved surface that it is pressed on.
+
+    A share of the speed at which it would let go of the curve; for a slow ball less, so that one in a hollow between
+    several surfaces comes down to rest.
+    """
+    return min(
+        ROLLING * math.sqrt(press / abs(touch.bend)),
+        max(0.5 * abs(along_speed(ball, touch)), 4.0 * soft_speed(press, extent)),
+    )
+
+
+@function
+def push_off(ball: Record, touch: Record, speed: float) -> None:
+    """Add `speed` [m/s] along a surface's normal to the ball's velocity; less than 0 takes from it."""
+    ball.vx, ball.vy = ball.vx + speed * touch.nx, ball.vy + speed * touch.ny

@@ -1,0 +1,139 @@
+"""What a ball meets next, from its last event: standing elements first, whose earliest hit bounds all other searches.
+
+Everything standing is searched once per flight and kept as a duration from the flight's start; the ball's search for a
+moving part starts at the later of the ball's last event and the part's last command or stop. Neither depends on where
+a step ends. A ball in contact with a wall flies, too: along its line, under what the wall leaves of its acceleration.
+"""
+
+import math
+
+from bounce_env.engine.compile.jit import Record, function, routine
+from bounce_env.engine.detect.parts import plan_meetings, plan_zones, way_off_part
+from bounce_env.engine.detect.sensors import next_crossing
+from bounce_env.engine.detect.surfaces import first_arc, first_circle, first_end, first_face, wall_normal
+from bounce_env.engine.memory.lookup import pull
+from bounce_env.engine.memory.records import (
+    NEXT_HIT,
+    NEXT_PART,
+    NEXT_SENSOR,
+    NEXT_ZONE,
+    OFF_END,
+    OFF_PART,
+    ON_ARC,
+    ON_CIRCLE,
+    ON_FACE,
+    RESOLVE,
+    RIDING,
+)
+from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.motion.flight import time_in_scene
+from bounce_env.engine.motion.instant import before, later
+
+
+@routine
+def plan_parts(state: State, tables: Tables, w: int, k: int) -> None:
+    """Search the parts in whose zone a ball is, and set its next event."""
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    gx, gy = pull(tables.gravity, ball)
+    plan_meetings(ball, state, tables, state.motions, tables.parts, state.zones, w, k, scene, gx, gy)
+    schedule(ball)
+
+
+@function
+def plan_crossing(state: State, tables: Tables, w: int, k: int, after: float, kind: int, index: int) -> None:
+    """Search the next crossing after (after, kind, index) in the present flight, and set the ball's next event."""
+    ball = state.balls[w, k]
+    gx, gy = pull(tables.gravity, ball)
+    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(
+        state, tables, w, k, gx, gy, after, kind, index
+    )
+    schedule(ball)
+
+
+@function
+def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
+    """Search everything that stands: what ends the flight that begins now, and when."""
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head = tables.scenes[scene]
+    gx, gy = pull(tables.gravity, ball)
+    nx, ny = wall_normal(state, tables.faces, w, k, ball.contact)
+    if ball.contact == RIDING:
+        nx, ny = ball.nx, ball.ny
+    horizon = time_in_scene(head.extent, ball.x, ball.y, ball.vx, ball.vy, gx, gy)
+    after, face = first_face(
+        ball,
+        tables.faces,
+        tables.gates,
+        head.faces,
+        state.face_sides,
+        state.disabled,
+        w,
+        k,
+        scene,
+        gx,
+        gy,
+        nx,
+        ny,
+        horizon,
+    )
+    ball.hit_kind, ball.hit_index = ON_FACE, face
+    after, circle = first_circle(ball, tables.circles, head.circles, state.disabled, w, scene, gx, gy, nx, ny, after)
+    if circle >= 0:
+        ball.hit_kind, ball.hit_index = ON_CIRCLE, circle
+    after, arc = first_arc(
+        ball, tables.arcs, head.arcs, state.arc_sides, state.disabled, w, k, scene, gx, gy, nx, ny, after
+    )
+    if arc >= 0:
+        ball.hit_kind, ball.hit_index = ON_ARC, arc
+    after, end = first_end(ball, tables.faces, head.faces, state.face_sides, state.disabled, w, scene, gx, gy, after)
+    if end >= 0:
+        ball.hit_kind, ball.hit_index = OFF_END, end
+    met = face >= 0 or circle >= 0 or arc >= 0 or end >= 0
+    if ball.contact == RIDING:
+        off = way_off_part(ball, state.motions, tables.parts, tables.turns, state.ends, w, scene, gx, gy)
+        if off < after:
+            after, met = off, True
+            ball.hit_kind, ball.hit_index = OFF_PART, ball.rides
+    ball.end_after = after
+    ball.hit_after = after if met else math.inf
+
+
+@function
+def plan_rest(state: State, tables: Tables, w: int, k: int) -> None:
+    """Search what does not end the flight, or may move: sensors, zones, parts; and set the ball's next event."""
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    gx, gy = pull(tables.gravity, ball)
+    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(state, tables, w, k, gx, gy, -1.0, -1, -1)
+    plan_zones(ball, state, tables, state.zones, tables.parts, w, k, scene, gx, gy, 0.0)
+    plan_parts(state, tables, w, k)
+
+
+@function
+def resolve_next(ball: Record) -> None:
+    """Let the ball's next event be at the instant of its last: to bounce from what it touches, and to be planned."""
+    ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, 0.0, 0.0
+    ball.sensor_after, ball.zone_after, ball.part_hi, ball.part_lo = math.inf, math.inf, math.inf, 0.0
+    schedule(ball)
+
+
+@function
+def schedule(ball: Record) -> None:
+    """Set the ball's next event from what is kept. At one instant: zone, standing element, part, sensor."""
+    hi, lo, kind = _instant_after(ball, ball.zone_after, NEXT_ZONE)
+    hit_hi, hit_lo, _ = _instant_after(ball, ball.hit_after, NEXT_HIT)
+    if before(hit_hi, hit_lo, hi, lo):
+        hi, lo, kind = hit_hi, hit_lo, NEXT_HIT
+    if before(ball.part_hi, ball.part_lo, hi, lo):
+        hi, lo, kind = ball.part_hi, ball.part_lo, NEXT_PART
+    sensor_hi, sensor_lo, _ = _instant_after(ball, ball.sensor_after, NEXT_SENSOR)
+    if before(sensor_hi, sensor_lo, hi, lo):
+        hi, lo, kind = sensor_hi, sensor_lo, NEXT_SENSOR
+    ball.next_hi, ball.next_lo, ball.next_kind = hi, lo, kind
+
+
+@function
+def _instant_after(ball: Record, duration: float, kind: int) -> tuple[float, float, int]:
+    if duration == math.inf:
+        return math.inf, 0.0, kind
+    hi, lo = later(ball.hi, ball.lo, duration)
+    return hi, lo, kind

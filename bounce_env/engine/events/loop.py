@@ -1,0 +1,229 @@
+"""The event loop of one world: the earliest event of its balls and parts, one after the other, up to an instant.
+
+A step in which nothing happens costs one comparison per ball and part. At one instant balls come before pairs of balls,
+these before parts, and each in its order.
+"""
+
+import math
+
+from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.contact.arrival import end_flight, snap
+from bounce_env.engine.contact.jams import forget_meetings
+from bounce_env.engine.contact.pairs import collide
+from bounce_env.engine.contact.resolve import resolve
+from bounce_env.engine.contact.sides import arrive
+from bounce_env.engine.detect.pairs import first_pair
+from bounce_env.engine.detect.parts import plan_zones
+from bounce_env.engine.detect.schedule import plan_parts
+from bounce_env.engine.events.crossings import cross
+from bounce_env.engine.events.crushing import crush, meet_crushed
+from bounce_env.engine.events.part_stops import part_stops, rest_parts
+from bounce_env.engine.memory.lookup import pull
+from bounce_env.engine.memory.records import BUDGET, CRUSHED, FLYING, NEXT_HIT, NEXT_SENSOR, NEXT_ZONE, OK, RESOLVE
+from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.motion.instant import before, since
+from bounce_env.engine.motion.parts import offset_at, stop_instant
+from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
+
+# How a run of the loop ends.
+DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
+
+# What comes next.
+NOTHING, OF_BALL, OF_PAIR, OF_PART = -1, 0, 1, 2
+
+# Bounces, the end of a contact and the beginning of another, a small hop and what is in its way, a crush and the stop
+# of a wall's two ends.
+ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 7
+
+
+@function
+def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table) -> int:
+    """Process the events of world `w` up to and including an instant; DONE, OUT_OF_BUDGET or LEDGER_FULL.
+
+    At most `max_events` of them since `resume`.
+    Unless DONE, the world's time is that of its last event, and the next call goes on from there.
+    """
+    world = state.worlds[w]
+    while True:
+        hi, lo, what, i, j = _next(state, tables, w, until_hi, until_lo)
+        if what == NOTHING:
+            world.time_hi, world.time_lo = until_hi, until_lo
+            return DONE
+        if world.events >= max_events:
+            _stop_for_budget(state, w)
+            return OUT_OF_BUDGET
+        if ledger is not None and world.rows + ROWS_AT_ONE_EVENT > len(ledger):
+            return LEDGER_FULL
+        world.time_hi, world.time_lo = hi, lo
+        if what == OF_BALL:
+            world.events += _ball_event(state, tables, w, i, ledger)
+        elif what == OF_PAIR:
+            collide(state, tables, state.pairs, w, i, j, hi, lo, ledger)
+            world.events += 1
+        else:
+            part_stops(state, tables, state.motions, tables.parts, world, w, i, ledger)
+            world.events += 1
+
+
+@function
+def _next(state: State, tables: Tables, w: int, until_hi: float, until_lo: float) -> tuple[float, float, int, int, int]:
+    hi, lo, what, i, j = math.inf, 0.0, NOTHING, -1, -1
+    for k in range(state.balls.shape[1]):
+        b = state.balls[w, k]
+        if not before(until_hi, until_lo, b.next_hi, b.next_lo) and before(b.next_hi, b.next_lo, hi, lo):
+            hi, lo, what, i = b.next_hi, b.next_lo, OF_BALL, k
+    pair_hi, pair_lo, one, other = first_pair(state.pairs, w, until_hi, until_lo)
+    if before(pair_hi, pair_lo, hi, lo):
+        hi, lo, what, i, j = pair_hi, pair_lo, OF_PAIR, one, other
+    scene = state.worlds[w].scene
+    m, stop_hi, stop_lo = _first_stop(state.motions, tables.parts, w, scene, until_hi, until_lo)
+    if before(stop_hi, stop_lo, hi, lo):
+        hi, lo, what, i = stop_hi, stop_lo, OF_PART, m
+    return hi, lo, what, i, j
+
+
+@function
+def _first_stop(
+    motions: Table, parts: Table, w: int, scene: int, until_hi: float, until_lo: float
+) -> tuple[int, float, float]:
+    hi, lo, first = math.inf, 0.0, -1
+    if motions is None or parts is None:
+        return first, hi, lo
+    for m in range(motions.shape[1]):
+        motion, part = motions[w, m], parts[scene, m]
+        if _moves_until(motion, part, until_hi, until_lo):
+            continue
+        stop_hi, stop_lo = stop_instant(motion, part)
+        if not before(until_hi, until_lo, stop_hi, stop_lo) and before(stop_hi, stop_lo, hi, lo):
+            hi, lo, first = stop_hi, stop_lo, m
+    return first, hi, lo
+
+
+@function
+def _moves_until(motion: Record, part: Record, hi: float, lo: float) -> bool:
+    """Whether the part surely comes to no stop up to an instant: most are told so without a division.
+
+    The margin covers the rounding of the two ways; within it the stop's instant decides. Asked of both stops alike,
+    since which one lies ahead is a coin's toss to the processor.
+    """
+    margin = UNSURE * part.span
+    return motion.velocity == 0.0 or margin < offset_at(motion, hi, lo) < part.span - margin
+
+
+@function
+def is_calm(
+    balls: Table, pairs: Table, motions: Table, parts: Table, w: int, scene: int, until_hi: float, until_lo: float
+) -> bool:
+    """Whether surely nothing happens in world `w` up to and including an instant."""
+    for k in range(balls.shape[1]):
+        if not before(until_hi, until_lo, balls[w, k].next_hi, balls[w, k].next_lo):
+            return False
+    if pairs is not None and first_pair(pairs, w, until_hi, until_lo)[2] >= 0:
+        return False
+    if motions is not None and parts is not None:
+        for m in range(motions.shape[1]):
+            if not _moves_until(motions[w, m], parts[scene, m], until_hi, until_lo):
+                return False
+    return True
+
+
+@function
+def _stop_for_budget(state: State, w: int) -> None:
+    for k in range(state.balls.shape[1]):
+        if state.balls[w, k].status == OK:
+            state.balls[w, k].status = BUDGET
+
+
+@function
+def _ball_event(state: State, tables: Tables, w: int, k: int, ledger: Table) -> int:
+    """Process the ball's next event; returns how many events it counts for in the budget."""
+    ball = state.balls[w, k]
+    if ball.next_kind == NEXT_ZONE:
+        scene = state.worlds[w].scene
+        gx, gy = pull(tables.gravity, ball)
+        plan_zones(ball, state, tables, state.zones, tables.parts, w, k, scene, gx, gy, ball.zone_after)
+        plan_parts(state, tables, w, k)
+        return 0
+    if ball.next_kind == NEXT_SENSOR:
+        cross(state, tables, w, k, ledger)
+        return 1
+    if ball.status == CRUSHED:
+        meet_crushed(state, tables, state.motions, tables.parts, w, k, ball.part_index, ledger)
+        return 1
+    planning = ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE
+    bounces = state.worlds[w].bounces
+    _hit(state, tables, w, k, ledger)
+    # A ball that is only planned anew has met nothing.
+    return 0 if planning and state.worlds[w].bounces == bounces and ball.contact == FLYING else 1
+
+
+@function
+def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    gx, gy = pull(tables.gravity, ball)
+    # A kept hit is a duration from the flight's start, so that its own rounding is all there is.
+    t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
+    x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
+    end_flight(ball, tables, scene, gx, gy, t, ball.next_hi, ball.next_lo)
+    snap(state, tables, w, k)
+    arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
+    at_once = _is_over_at_once(ball, t) and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
+    bounces = state.worlds[w].bounces
+    resolve(state, tables, w, k, at_once, ledger)
+    ball.confined += state.worlds[w].bounces > bounces
+    if ball.status == CRUSHED:
+        crush(state, tables, state.motions, tables.parts, w, k, ledger)
+
+
+@function
+def _is_over_at_once(ball: Record, t: float) -> bool:
+    """Whether in `t` seconds of flight neither the ball's place nor its velocity has changed by more than rounding."""
+    speed, pull = abs(ball.vx) + abs(ball.vy), abs(ball.gx) + abs(ball.gy)
+    return speed * t <= ball.slack and pull * t <= ULPS_OF_SPEED * speed
+
+
+@function
+def restart(state: State, tables: Tables, w: int) -> None:
+    """Set world `w` back to time 0 with its parts where they start; balls are placed after this."""
+    world = state.worlds[w]
+    world.time_hi, world.time_lo = 0.0, 0.0
+    world.bounces, world.speed_capped, world.rows = 0, 0, 0
+    world.drag_hi, world.drag_lo, world.meet_hi, world.meet_lo = -1.0, 0.0, -math.inf, 0.0
+    forget_meetings(state.pairs, w)
+    clear_hits(state, w)
+    _cool_down(state.cooling, w)
+    _switch_on(state.disabled, w)
+    count = tables.scenes[world.scene].parts
+    rest_parts(state.motions, tables.parts, state.ends, tables.guides, w, world.scene, count)
+
+
+@function
+def _cool_down(cooling: Table, w: int) -> None:
+    if cooling is not None:
+        for element in range(cooling.shape[1]):
+            cooling[w, element].hi, cooling[w, element].lo = 0.0, 0.0
+
+
+@function
+def _switch_on(disabled: Table, w: int) -> None:
+    if disabled is not None:
+        for element in range(disabled.shape[1]):
+            disabled[w, element] = 0
+
+
+@function
+def clear_hits(state: State, w: int) -> None:
+    """Forget which elements were struck in the last step; a step without hits pays a comparison."""
+    if state.worlds[w].dirty:
+        state.worlds[w].dirty = 0
+        for element in range(state.hits.shape[1]):
+            state.hits[w, element] = 0
+
+
+@function
+def resume(state: State, w: int) -> None:
+    """Let balls that the event budget stopped go on, with a new budget."""
+    state.worlds[w].events = 0
+    for k in range(state.balls.shape[1]):
+        if state.balls[w, k].status == BUDGET:
+            state.balls[w, k].status = OK

@@ -1,0 +1,116 @@
+"""Crossings of a circle on a curved flight, all of them in order: what an arc needs, whose inside is not convex.
+
+The squared distance from the centre less the squared radius is a polynomial of degree four in time. The roots of its
+second derivative (a quadratic) part time into intervals on which the first is monotone, the first's roots into
+intervals on which the polynomial itself is, and in each of these a root is bracketed: none can be stepped over.
+"""
+
+import math
+
+from bounce_env.engine.compile.jit import function
+from bounce_env.engine.tolerances import BRACKETING_STEPS
+
+Coefficients = tuple[float, float, float, float, float]  # of t^0 to t^4
+
+
+@function
+def distance_polynomial(x: float, y: float, vx: float, vy: float, ax: float, ay: float, reach: float) -> Coefficients:
+    """|p(t)|^2 - reach^2 for p(t) = (x, y) + (vx, vy) t + (ax, ay) t^2 / 2."""
+    distance = math.sqrt(x * x + y * y)
+    return (
+        (distance - reach) * (distance + reach),
+        2.0 * (x * vx + y * vy),
+        vx * vx + vy * vy + x * ax + y * ay,
+        vx * ax + vy * ay,
+        0.25 * (ax * ax + ay * ay),
+    )
+
+
+@function
+def without_root_at_zero(c: Coefficients) -> Coefficients:
+    """The polynomial divided by t, its constant taken for zero: the same crossings, but for the one at the start."""
+    return c[1], c[2], c[3], c[4], 0.0
+
+
+@function
+def value(c: Coefficients, t: float) -> float:
+    """The polynomial at t."""
+    return c[0] + (c[1] + (c[2] + (c[3] + c[4] * t) * t) * t) * t
+
+
+@function
+def slope(c: Coefficients, t: float) -> float:
+    """Its first derivative at t."""
+    return c[1] + (2.0 * c[2] + (3.0 * c[3] + 4.0 * c[4] * t) * t) * t
+
+
+@function
+def inflections(c: Coefficients, horizon: float) -> tuple[float, float]:
+    """The roots of the second derivative, in order and cut to [0, horizon]."""
+    p, q, r = 2.0 * c[2], 3.0 * c[3], 12.0 * c[4]  # p + 2 q t + r t^2
+    square = q * q - p * r
+    if square <= 0.0:
+        return 0.0, 0.0
+    z = -(q + math.copysign(math.sqrt(square), q))
+    first = z / r if r != 0.0 else math.inf
+    second = p / z if z != 0.0 else 0.0
+    first, second = min(max(first, 0.0), horizon), min(max(second, 0.0), horizon)
+    return min(first, second), max(first, second)
+
+
+@function
+def turning_point(c: Coefficients, low: float, high: float) -> float:
+    """Where in [low, high] the first derivative, monotone there, is zero; `low` if nowhere."""
+    at_low = slope(c, low)
+    if (at_low < 0.0) == (slope(c, high) < 0.0):
+        return low
+    start, end = low, high
+    t = 0.5 * (start + end)
+    for _ in range(BRACKETING_STEPS):
+        s = slope(c, t)
+        if (s < 0.0) == (at_low < 0.0):
+            start = t
+        else:
+            end = t
+        bend = 2.0 * c[2] + (6.0 * c[3] + 12.0 * c[4] * t) * t
+        following = t - s / bend
+        if not start < following < end:
+            following = 0.5 * (start + end)
+        if following == t or end - start <= 1e-15 * end:
+            break
+        t = following
+    return t
+
+
+@function
+def root_between(c: Coefficients, low: float, high: float) -> float:
+    """The root in [low, high], where the polynomial is monotone and changes sign."""
+    at_low = value(c, low)
+    start, end = low, high
+    t = 0.5 * (start + end)
+    for _ in range(BRACKETING_STEPS):
+        f = value(c, t)
+        if (f < 0.0) == (at_low < 0.0):
+            start = t
+        else:
+            end = t
+        following = t - f / slope(c, t)
+        if not start < following < end:
+            following = 0.5 * (start + end)
+        if following == t or end - start <= 1e-16 * end:
+            break
+        t = following
+    return t
+
+
+@function
+def monotone_borders(c: Coefficients, horizon: float) -> tuple[float, float, float, float, float]:
+    """Times in order, from 0 to `horizon`, between which the polynomial is monotone."""
+    first, second = inflections(c, horizon)
+    return (
+        0.0,
+        turning_point(c, 0.0, first),
+        turning_point(c, first, second),
+        turning_point(c, second, horizon),
+        horizon,
+    )

@@ -1,0 +1,147 @@
+"""The records that scenes and worlds are made of, and the numbers that stand for kinds. Every field has 8 bytes."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[Any]
+
+
+def record(**fields: str) -> np.dtype[Any]:
+    """A packed record type from names and formats."""
+    # np.record gives attribute access with the compiler switched off, too.
+    return np.dtype((np.record, np.dtype(list(fields.items()), align=True)))
+
+
+SCENE = record(
+    # How many rows of each table this scene uses.
+    elements="i8", faces="i8", circles="i8", arcs="i8", sensors="i8", rings="i8", fields="i8", parts="i8",
+    extent="f8",  # [m] the largest coordinate of the scene plus the ball's radius: the scale of round-off
+    max_speed="f8",  # [m/s] inf where the scene has no cap
+    rest_speed="f8",  # [m/s]
+    ball_radius="f8", ball_b="f8",
+)  # fmt: skip
+ELEMENT = record(
+    b="f8", f="f8",  # the ball's times the element's
+    kick="f8", kick_threshold="f8",  # [m/s]
+    cooldown="f8",  # [s]
+)  # fmt: skip
+FACE = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", reach="f8", element="i8")
+CIRCLE = record(x="f8", y="f8", reach="f8", element="i8")
+ARC = record(
+    x="f8", y="f8", outer="f8", inner="f8",  # [m] distances from the centre at which it is struck; inner 0: never
+    sx="f8", sy="f8", ex="f8", ey="f8", span="i8",  # unit vectors to start and end; CLOSED, MINOR or MAJOR
+    element="i8",
+)  # fmt: skip
+SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", drain="i8", element="i8")
+RING = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
+EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
+PART = record(  # what moves: a capsule that slides along its core or turns about (x, y), or a dragged wall
+    x="f8", y="f8", ux="f8", uy="f8",  # [m] where it is at offset 0; unit vector along its core
+    back="f8", front="f8",  # [m] where the core begins and ends along that vector
+    radius="f8", reach="f8",  # [m] about the core; the same plus the ball's
+    span="f8", start="f8",  # [m or rad] from stop to stop, 0 of a dragged wall; offset after a reset
+    up_speed="f8", down_speed="f8",  # [m/s or rad/s] the fastest either way
+    shuttle="f8",  # [m/s] of a part that turns back at its stops: the speed at which it sets off; otherwise 0
+    element="i8",
+)  # fmt: skip
+GUIDE = record(  # of a dragged wall
+    sx="f8", sy="f8", ex="f8", ey="f8",  # [m] where its start and its end are after a reset
+    x0="f8", y0="f8", x1="f8", y1="f8",  # [m] the box in which they stay
+    shortest="f8",  # [m] the length at which both stop
+)  # fmt: skip
+WORLD = record(
+    time_hi="f8", time_lo="f8",
+    scene="u8",
+    bounces="i8", speed_capped="i8",  # counts since reset
+    events="i8",  # of the present call or step
+    drag_hi="f8", drag_lo="f8",  # when drag acted last
+    dirty="i8",  # whether `hits` has entries of the last step
+    rows="i8",  # of the ledger in use
+    meet_hi="f8", meet_lo="f8",  # when two balls last hit each other
+    meets="i8", meet_speed="f8",  # at that instant: how often any two did, and the fastest [m/s] of them
+)  # fmt: skip
+
+# What a step without events reads comes first: it lies together in memory.
+BALL = record(
+    x="f8", y="f8", vx="f8", vy="f8", hi="f8", lo="f8",  # the last event: state and instant; the flight starts here
+    ax="f8", ay="f8",  # acceleration in this flight: in contact what the wall leaves of gravity and fields
+    next_hi="f8", next_lo="f8", next_kind="i8",  # the ball's next event
+    status="i8",
+    gx="f8", gy="f8",  # acceleration: gravity and fields
+    contact="i8",  # the face that the ball slides on, FLYING, HELD or RIDING
+    rides="i8",  # the part that carries it, sliding or held; otherwise -1
+    support="i8",  # the element that it is in contact with, -1 in free flight
+    settling="i8",  # SETTLES while the last bounces before a contact are summed, JAMMED between other balls, or 0
+    nx="f8", ny="f8",  # normal of that contact, to the ball
+    rolling="i8",  # the element with a curve that it was last set rolling on, otherwise -1
+    slack="f8",  # [m] what counts as touching at that instant
+    vague="f8",  # [m/s] by how much another ball's push may miss its direction at that instant
+    touched="i8",  # how many surfaces it touched when it was last resolved
+    confined="i8",  # how often it has bounced since it last flew any way to speak of, see BOUNCES_WITHOUT_ROOM
+    strayed="f8", legs="i8",  # [m] the way that it has come, at most, in this leg; how many legs of ROOM_TO_MEET before
+    hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
+    end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene
+    sensor_after="f8", sensor_kind="i8", sensor_index="i8",
+    zone_after="f8",  # duration to the next entry into or exit from a zone that a part can reach
+    part_hi="f8", part_lo="f8", part_index="i8",  # next hit of a moving part, as far as its velocity is known
+    struck="i8", squeezes="i8", sx="f8", sy="f8",  # the last strike by a closing part, see `engine.events.crushing`
+    snx="f8", sny="f8", sux="f8", suy="f8",
+)  # fmt: skip
+TOUCH = record(
+    nx="f8", ny="f8", ux="f8", uy="f8",  # unit normal to the ball, velocity of the surface [m/s]
+    gap="f8",  # [m] to it: next to nothing, but for rounding
+    bend="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
+    along="f8", length="f8",  # [m] of a straight one: where on it the ball is, with the normal on its left
+    least="f8",  # [m/s] the smallest rebound from a part, where there is one
+    moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
+    element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
+)  # fmt: skip
+PAIR = record(  # of two balls
+    hi="f8", lo="f8",  # when they hit each other while both keep to their flights
+    meets="i8", legs="i8",  # how often they have done so while these were all the legs of both
+)  # fmt: skip
+COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
+ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
+MOTION = record(  # of a part, at the instant of its last command or stop
+    # [m, m/s] along the rail, or [rad, rad/s] of the stroke; of a dragged wall that moves the time to its next stop,
+    # [s] below 0, and 1
+    offset="f8", velocity="f8", hi="f8", lo="f8",
+    command="f8",  # as asked for; `velocity` is 0 where a stop or a crushed ball holds the part against it
+)  # fmt: skip
+ENDS = record(  # of a dragged wall, at the instant of its last command or stop
+    x0="f8", y0="f8", x1="f8", y1="f8", vx0="f8", vy0="f8", vx1="f8", vy1="f8",  # [m], [m/s]
+    cx0="f8", cy0="f8", cx1="f8", cy1="f8",  # [m/s] as asked for
+)  # fmt: skip
+LEDGER = record(
+    time="f8", ball="i8", element="i8", kind="i8", x="f8", y="f8", nx="f8", ny="f8",
+    vx0="f8", vy0="f8", vx1="f8", vy1="f8", ux="f8", uy="f8",
+)  # fmt: skip
+
+# Surfaces that one ball can touch at one instant; more than these are not seen.
+TOUCHES = 16
+
+# Ball status.
+OK, BUDGET, CRUSHED, OUT = 0, 1, 2, 3
+
+# Kinds of ledger rows.
+BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = 0, 1, 2, 3, 4, 5
+
+# Kinds of standing obstacles.
+ON_FACE, ON_CIRCLE, ON_ARC, OFF_END, RESOLVE, OFF_PART = 0, 1, 2, 3, 4, 5
+
+# Kinds of sensors.
+LINE, RING_ENTRY, FIELD_EDGE = 0, 1, 2
+
+# Spans of arcs: 2 pi, up to pi, more.
+CLOSED, MINOR, MAJOR = 0, 1, 2
+
+# `contact` of a ball that is in flight, of one that rests, and of one that slides on a part.
+FLYING, HELD, RIDING = -1, -2, -3
+
+# `settling`
+SETTLES, JAMMED = 1, 2
+
+# Kinds of a ball's next event.
+NEXT_HIT, NEXT_PART, NEXT_SENSOR, NEXT_ZONE = 0, 1, 2, 3

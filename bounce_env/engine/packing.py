@@ -1,0 +1,277 @@
+"""Packs validated scenes into the tables that kernels read. Uses sqrt only: the same bits on every machine."""
+
+import math
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from bounce_env.engine.compile.jit import from_python
+from bounce_env.engine.memory.records import (
+    ARC,
+    CIRCLE,
+    CLOSED,
+    EDGE,
+    ELEMENT,
+    FACE,
+    GUIDE,
+    MAJOR,
+    MINOR,
+    PART,
+    RING,
+    SCENE,
+    SENSOR,
+    Array,
+)
+from bounce_env.engine.memory.state import Tables
+from bounce_env.engine.motion.sincos import sin_cos as compiled_sin_cos
+from bounce_env.scene import Arc, Bumper, Field, Flipper, Part, Scene, Sensor, Wall, moves
+
+sin_cos = from_python(compiled_sin_cos)
+Row = tuple[float, ...]
+Point = tuple[float, float]
+
+
+def pack(scenes: Sequence[Scene]) -> Tables:
+    """Tables for a batch whose worlds play `scenes`; a feature that none of them has is left out.
+
+    Raises ValueError when some scenes have point balls and others discs: those are different kernels.
+    """
+    if len({scene.ball.radius == 0.0 for scene in scenes}) > 1:
+        raise ValueError("scenes of one batch must all have a ball of radius 0, or all of radius > 0")
+    faces = _table(FACE, scenes, _faces)
+    circles = _table(CIRCLE, scenes, _circles)
+    sensors = _table(SENSOR, scenes, _sensors)
+    arcs = _table(ARC, scenes, _arcs)
+    rings = _table(RING, scenes, _rings)
+    edges = _table(EDGE, scenes, _edges)
+    parts = _table(PART, scenes, _parts)
+    rows = (_faces, _circles, _arcs, _sensors, _rings, _edges, _parts)
+    heads = [
+        (len(s.elements), *(len(of(s)) for of in rows), extent(s), _cap(s), s.rest_speed, s.ball.radius, s.ball.b)
+        for s in scenes
+    ]
+    elements = _table(ELEMENT, scenes, _materials)
+    gravity = np.array([scene.gravity for scene in scenes], np.float64)
+    return Tables(
+        scenes=np.array(heads, SCENE),
+        elements=np.zeros((len(scenes), 0), ELEMENT) if elements is None else elements,
+        gravity=gravity if gravity.any() or edges is not None else None,
+        faces=faces,
+        gates=_gates(scenes),
+        circles=circles,
+        arcs=arcs,
+        sensors=sensors,
+        rings=rings,
+        edges=edges,
+        parts=parts,
+        turns=_turns(scenes),
+        guides=_guides(scenes),
+        drags=np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
+    )
+
+
+def extent(scene: Scene) -> float:
+    """The scale of round-off [m]: the largest coordinate that the elements occupy plus the ball's radius.
+
+    Rounded up to a power of two, so that no digit of it depends on how a bounding box was computed.
+    """
+    largest = max(abs(c) for c in scene.bounds)
+    # Distances to an arc are taken from its centre, which may lie far outside of what it occupies.
+    circles = (max(map(abs, e.center)) + e.radius for e in scene.elements if isinstance(e, Arc))
+    largest = max(largest, *circles, 0.0) + scene.ball.radius
+    return math.ldexp(1.0, math.frexp(largest)[1])
+
+
+def direction(start: Point, end: Point) -> tuple[float, float, float]:
+    """Unit vector and length [m] of a segment. Scaled first, so that no square under- or overflows."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    scale = max(abs(dx), abs(dy))
+    dx, dy = dx / scale, dy / scale
+    length = math.sqrt(dx * dx + dy * dy)
+    return dx / length, dy / length, length * scale
+
+
+def _table(dtype: np.dtype[Any], scenes: Sequence[Scene], rows_of: Callable[[Scene], list[Row]]) -> Array | None:
+    rows = [rows_of(scene) for scene in scenes]
+    widest = max(len(r) for r in rows)
+    if widest == 0:
+        return None
+    table = np.zeros((len(scenes), widest), dtype)
+    for s, scene_rows in enumerate(rows):
+        for i, row in enumerate(scene_rows):
+            table[s, i] = row
+    return table
+
+
+def _cap(scene: Scene) -> float:
+    return math.inf if scene.max_speed is None else scene.max_speed
+
+
+def _materials(scene: Scene) -> list[Row]:
+    ball = scene.ball
+    return [
+        (0.0, 0.0, 0.0, 0.0, 0.0)
+        if isinstance(e, Sensor | Field)
+        else (ball.b * e.b, ball.f * e.f, e.kick, e.kick_threshold, e.cooldown)
+        for e in scene.elements
+    ]
+
+
+def _walls(scene: Scene) -> Iterable[tuple[int, Wall]]:
+    """The walls that stand."""
+    return ((i, e) for i, e in enumerate(scene.elements) if isinstance(e, Wall) and not moves(e))
+
+
+def _faces(scene: Scene) -> list[Row]:
+    return [(*w.start, *direction(w.start, w.end), scene.ball.radius, i) for i, w in _walls(scene)]
+
+
+def _gates(scenes: Sequence[Scene]) -> Array | None:
+    """Which faces belong to one-way walls; None where there are none."""
+    flags = [[wall.one_way for _, wall in _walls(scene)] for scene in scenes]
+    if not any(map(any, flags)):
+        return None
+    gates = np.zeros((len(scenes), max(map(len, flags))), np.int8)
+    for s, row in enumerate(flags):
+        gates[s, : len(row)] = row
+    return gates
+
+
+def switch_ends(tables: Tables, scene: Scene, disabled: Collection[int]) -> None:
+    """Let the round ends in the tables of one scene be those of the elements that are not `disabled` (indices)."""
+    if tables.circles is None:
+        return
+    rows = _circles(scene, disabled)
+    tables.circles[0, : len(rows)] = rows
+    tables.scenes[0]["circles"] = len(rows)
+
+
+def _circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:
+    radius = scene.ball.radius
+    rows: list[Row] = [
+        (*e.center, e.radius + radius, i)
+        for i, e in enumerate(scene.elements)
+        if isinstance(e, Bumper) and not moves(e)
+    ]
+    if radius > 0.0:
+        rows += _ends(scene, disabled)
+    return rows
+
+
+def _ends(scene: Scene, disabled: Collection[int]) -> list[Row]:
+    """The round ends of walls and arcs. Of several at one point the first is kept: at a tie it is the one struck."""
+    owner: dict[Point, int] = {}
+    for i, element in enumerate(scene.elements):
+        if i in disabled:
+            continue
+        for point in _end_points(element):
+            owner.setdefault(point, i)
+    return [(*point, scene.ball.radius, i) for point, i in owner.items()]
+
+
+def _end_points(element: object) -> tuple[Point, ...]:
+    if isinstance(element, Wall) and not (element.one_way or moves(element)):
+        return element.start, element.end
+    if isinstance(element, Arc) and not element.closed:
+        (x, y), r = element.center, element.radius
+        angles = (element.start_angle, element.end_angle)
+        return tuple((x + r * c, y + r * s) for s, c in map(sin_cos, angles))
+    return ()
+
+
+def _arcs(scene: Scene) -> list[Row]:
+    rows: list[Row] = []
+    radius = scene.ball.radius
+    for i, arc in enumerate(scene.elements):
+        if isinstance(arc, Arc):
+            (sin_start, cos_start), (sin_end, cos_end) = sin_cos(arc.start_angle), sin_cos(arc.end_angle)
+            span = MINOR if arc.end_angle - arc.start_angle <= math.pi else MAJOR
+            reaches = (arc.radius + radius, max(arc.radius - radius, 0.0))
+            span = CLOSED if arc.closed else span
+            rows.append((*arc.center, *reaches, cos_start, sin_start, cos_end, sin_end, span, i))
+    return rows
+
+
+def _sensors(scene: Scene) -> list[Row]:
+    return [
+        (*e.segment[0], *direction(*e.segment), int(e.drain), i)
+        for i, e in enumerate(scene.elements)
+        if isinstance(e, Sensor) and e.segment is not None
+    ]
+
+
+def _rings(scene: Scene) -> list[Row]:
+    return [
+        (*e.circle[0], e.circle[1], int(e.drain), i)
+        for i, e in enumerate(scene.elements)
+        if isinstance(e, Sensor) and e.circle is not None
+    ]
+
+
+def _edges(scene: Scene) -> list[Row]:
+    """The border lines of the fields, counter-clockwise; `last` is 1 on the last edge of each field."""
+    rows: list[Row] = []
+    for field in scene.elements:
+        if isinstance(field, Field):
+            points = field.points if _turns_left(field.points) else tuple(reversed(field.points))
+            for k, point in enumerate(points):
+                ux, uy, _ = direction(point, points[(k + 1) % len(points)])
+                rows.append((*point, ux, uy, *field.acceleration, int(k + 1 == len(points))))
+    return rows
+
+
+def _turns_left(points: Sequence[Point]) -> bool:
+    (ax, ay), (bx, by), (cx, cy) = points[:3]
+    return (bx - ax) * (cy - by) > (by - ay) * (cx - bx)
+
+
+def _parts(scene: Scene) -> list[Row]:
+    return [(*_part(e, scene.ball.radius), i) for i, e in scene.parts]
+
+
+def _part(e: Part, ball_radius: float) -> Row:
+    """A PART but for the index of its element."""
+    if isinstance(e, Wall):
+        ux, uy, length = direction(e.start, e.end)
+        return (*e.start, ux, uy, 0.0, length, 0.0, ball_radius, 0.0, 0.0, 0.0, 0.0, 0.0)
+    thick = (e.radius, e.radius + ball_radius)
+    if isinstance(e, Flipper):
+        s, c = sin_cos(e.rest_angle)
+        stroke = abs(e.active_angle - e.rest_angle)
+        return (*e.pivot, c, s, 0.0, e.length, *thick, stroke, 0.0, e.up_speed, e.down_speed, 0.0)
+    if isinstance(e, Bumper):
+        assert e.rail_end is not None
+        ux, uy, span = direction(e.center, e.rail_end)
+        return (*e.center, ux, uy, 0.0, 0.0, *thick, span, 0.0, e.speed, e.speed, e.speed)
+    ux, uy, span = direction(e.rail_start, e.rail_end)
+    shape = (-e.half_width, e.half_width, *thick)
+    return (*e.rail_start, ux, uy, *shape, span, 0.5 * span, e.max_speed, e.max_speed, 0.0)
+
+
+def _turns(scenes: Sequence[Scene]) -> Array | None:
+    """Which way each part turns: 1, -1, or 0 for one that slides; None where none turns."""
+    signs = [
+        [(1 if e.active_angle > e.rest_angle else -1) if isinstance(e, Flipper) else 0 for _, e in scene.parts]
+        for scene in scenes
+    ]
+    if not any(map(any, signs)):
+        return None
+    turns = np.zeros((len(scenes), max(map(len, signs))), np.int8)
+    for s, row in enumerate(signs):
+        turns[s, : len(row)] = row
+    return turns
+
+
+def _guides(scenes: Sequence[Scene]) -> Array | None:
+    """What bounds the way of each dragged wall, by part; None where no scene has any."""
+    if not any(isinstance(e, Wall) for scene in scenes for _, e in scene.parts):
+        return None
+    guides = np.zeros((len(scenes), max(len(scene.parts) for scene in scenes)), GUIDE)
+    for s, scene in enumerate(scenes):
+        side = extent(scene)
+        for m, (_, e) in enumerate(scene.parts):
+            if isinstance(e, Wall):
+                low, high = e.reach or ((-side, -side), (side, side))
+                guides[s, m] = (*e.start, *e.end, *low, *high, e.shortest)
+    return guides

@@ -11,6 +11,7 @@ import numpy as np
 
 import bounce_env
 from bounce_env import Ball, Bumper, Scene, Wall, World
+from bounce_env.engine import world_kernels
 
 PACKAGE = Path(bounce_env.__file__).parent
 RUN = """

@@ -11,7 +11,7 @@ from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.memory.records import OUT, Array
-from bounce_env.engine.memory.state import State
+from bounce_env.engine.memory.state import State, copy_of_world
 from bounce_env.engine.motion.readout import view
 from bounce_env.games.batch import Batch
 from bounce_env.games.options import CONFIG, options, refuse
@@ -162,7 +162,7 @@ class Frames:
         if at_bounce and _has_bounced(shown, w):
             shown, row = _at_flight_start(shown, w), 0
         balls, cores = np.empty((shown.balls.shape[1], 4)), np.empty((len(scene.parts), 4))
-        view(shown, batch.tables, row, balls, cores)
+        view(shown, row, balls, cores)
         world = shown.worlds[row]
         return Picture(
             balls=balls[:, :2],
@@ -185,8 +185,7 @@ def _has_bounced(state: State, w: int) -> bool:
 
 def _at_flight_start(state: State, w: int) -> State:
     """One world's state for `view` alone, at the instant at which its ball's present flight began."""
-    rows: list[Any] = [None if table is None else table[w : w + 1].copy() for table in state]
-    one = State(*rows)
+    one = copy_of_world(state, w)
     ball, world = one.balls[0, 0], one.worlds[0]
     world.time_hi, world.time_lo = ball.hi, ball.lo
     if one.motions is not None:

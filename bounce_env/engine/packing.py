@@ -1,4 +1,4 @@
-"""Packs validated scenes into the tables that kernels read. Uses sqrt only: the same bits on every machine."""
+"""Pack validated scenes into the state that kernels read. Uses sqrt only: the same bits on every machine."""
 
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
@@ -23,7 +23,7 @@ from bounce_env.engine.memory.records import (
     SENSOR,
     Array,
 )
-from bounce_env.engine.memory.state import Tables
+from bounce_env.engine.memory.state import State, new_state
 from bounce_env.engine.motion.sincos import sin_cos as compiled_sin_cos
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Part, Scene, Sensor, Wall, moves
 
@@ -32,13 +32,29 @@ Row = tuple[float, ...]
 Point = tuple[float, float]
 
 
-def pack(scenes: Sequence[Scene]) -> Tables:
-    """Tables for a batch whose worlds play `scenes`; a feature that none of them has is left out.
+def pack(
+    scenes: Sequence[Scene], worlds: int = 1, balls: int = 1, *, switches: bool = False, own_rows: bool = False
+) -> State:
+    """Return the state of a batch whose worlds play `scenes`; a feature that none of them has is left out.
 
-    Raises ValueError when some scenes have point balls and others discs: those are different kernels.
+    switches: whether elements can be switched off. own_rows: each world has a row of every table for itself, all of
+    them of the one scene. Raises ValueError when some scenes have point balls and others discs: those are different
+    kernels.
     """
-    if len({scene.ball.radius == 0.0 for scene in scenes}) > 1:
+    points = {scene.ball.radius == 0.0 for scene in scenes}
+    if len(points) > 1:
         raise ValueError("scenes of one batch must all have a ball of radius 0, or all of radius > 0")
+    tables = _tables(scenes)
+    if own_rows:
+        tables = {name: None if t is None else np.repeat(t, worlds, axis=0) for name, t in tables.items()}
+    state = new_state(tables, worlds, balls, point=points == {True}, switches=switches)
+    if own_rows:
+        state.worlds["scene"] = np.arange(worlds)
+    return state
+
+
+def _tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
+    """The tables of the scenes, by their names in `State`."""
     faces = _table(FACE, scenes, _faces)
     circles = _table(CIRCLE, scenes, _circles)
     sensors = _table(SENSOR, scenes, _sensors)
@@ -53,22 +69,22 @@ def pack(scenes: Sequence[Scene]) -> Tables:
     ]
     elements = _table(ELEMENT, scenes, _materials)
     gravity = np.array([scene.gravity for scene in scenes], np.float64)
-    return Tables(
-        scenes=np.array(heads, SCENE),
-        elements=np.zeros((len(scenes), 0), ELEMENT) if elements is None else elements,
-        gravity=gravity if gravity.any() or edges is not None else None,
-        faces=faces,
-        gates=_gates(scenes),
-        circles=circles,
-        arcs=arcs,
-        sensors=sensors,
-        rings=rings,
-        edges=edges,
-        parts=parts,
-        turns=_turns(scenes),
-        guides=_guides(scenes),
-        drags=np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
-    )
+    return {
+        "scenes": np.array(heads, SCENE),
+        "elements": np.zeros((len(scenes), 0), ELEMENT) if elements is None else elements,
+        "gravity": gravity if gravity.any() or edges is not None else None,
+        "faces": faces,
+        "gates": _gates(scenes),
+        "circles": circles,
+        "arcs": arcs,
+        "sensors": sensors,
+        "rings": rings,
+        "edges": edges,
+        "parts": parts,
+        "turns": _turns(scenes),
+        "guides": _guides(scenes),
+        "drags": np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
+    }
 
 
 def extent(scene: Scene) -> float:
@@ -138,13 +154,13 @@ def _gates(scenes: Sequence[Scene]) -> Array | None:
     return gates
 
 
-def switch_ends(tables: Tables, scene: Scene, disabled: Collection[int]) -> None:
+def switch_ends(state: State, scene: Scene, disabled: Collection[int]) -> None:
     """Let the round ends in the tables of one scene be those of the elements that are not `disabled` (indices)."""
-    if tables.circles is None:
+    if state.circles is None:
         return
     rows = _circles(scene, disabled)
-    tables.circles[0, : len(rows)] = rows
-    tables.scenes[0]["circles"] = len(rows)
+    state.circles[0, : len(rows)] = rows
+    state.scenes[0]["circles"] = len(rows)
 
 
 def _circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:

@@ -9,8 +9,7 @@ import struct
 
 import numpy as np
 
-from bounce_env.engine.memory.records import Array
-from bounce_env.engine.memory.state import State
+from bounce_env.engine.memory.state import State, moving
 from bounce_env.scene import Scene
 from bounce_env.wording import shown
 
@@ -23,13 +22,13 @@ _CHECKSUM = 32
 def to_bytes(scene: Scene, state: State) -> bytes:
     """The state of a world of `scene`."""
     head = _HEAD.pack(_MAGIC, VERSION, _digest(scene))
-    data = head + b"".join(array.tobytes() for array in _arrays(state))
+    data = head + b"".join(array.tobytes() for array in moving(state))
     return data + hashlib.sha256(data).digest()
 
 
 def from_bytes(data: bytes, scene: Scene, state: State) -> None:
     """Write a snapshot into the state of a world of `scene`, or raise ValueError before anything of it is written."""
-    arrays = _arrays(state)
+    arrays = moving(state)
     size = _HEAD.size + sum(array.nbytes for array in arrays) + _CHECKSUM
     if not isinstance(data, bytes | bytearray | memoryview):
         raise ValueError(f"snapshot = {shown(data)}: must be bytes")
@@ -47,10 +46,6 @@ def from_bytes(data: bytes, scene: Scene, state: State) -> None:
     for array in arrays:
         array[...] = np.frombuffer(data, array.dtype, array.size, offset).reshape(array.shape)
         offset += array.nbytes
-
-
-def _arrays(state: State) -> list[Array]:
-    return [array for array in state if array is not None]
 
 
 def _digest(scene: Scene) -> bytes:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.events.loop import LEDGER_FULL
 from bounce_env.engine.memory.records import LEDGER, OUT
-from bounce_env.engine.memory.state import State, Tables, new_state
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import offset_at
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack, switch_ends
@@ -53,7 +53,7 @@ class World:
             raise TypeError(f"scene = {shown(scene)}: must be a Scene; load_scene reads one from a file")
         self.scene = scene
         self._balls = whole("balls", balls, 1, MAX_BALLS)
-        self._tables, self._state = _new(scene, self._balls)
+        self._state = pack([scene], balls=self._balls, switches=True)
         self._parts = scene.parts
         self._started = False
 
@@ -71,7 +71,7 @@ class World:
         for k, (x, y) in enumerate(at.tolist()):
             at[k] = cleared(self.scene, cores, x, y)
         apart(self.scene, at)
-        reset_world(self._state, self._tables, at, speed)
+        reset_world(self._state, at, speed)
         self._switch_ends()
         self._started = True
 
@@ -92,14 +92,14 @@ class World:
         world = self._state.worlds[0]
         hi, lo = begin_call(self._state, seconds)
         if not ledger:
-            advance_to(self._state, self._tables, hi, lo, max_events, None)
+            advance_to(self._state, hi, lo, max_events, None)
             return None
         pages: list[npt.NDArray[Any]] = []
         page = np.zeros(_LEDGER_ROWS, LEDGER)
         code = LEDGER_FULL
         while code == LEDGER_FULL:
             world.rows = 0
-            code = advance_to(self._state, self._tables, hi, lo, max_events, page)
+            code = advance_to(self._state, hi, lo, max_events, page)
             pages.append(page[: world.rows].copy())
         return np.concatenate(pages)
 
@@ -120,7 +120,7 @@ class World:
             raise ValueError(f"command: {shown(name)} must be one of the scene's parts: {sorted(names)}{hint}")
         part = self._parts[names[name]][1]
         if isinstance(part, Wall):
-            command_wall(self._state, self._tables, names[name], _velocities(name, value, self.scene.max_speed))
+            command_wall(self._state, names[name], _velocities(name, value, self.scene.max_speed))
             return
         if isinstance(part, Flipper):
             if not isinstance(value, bool | np.bool_):
@@ -129,7 +129,7 @@ class World:
         else:
             fastest = part.max_speed if isinstance(part, Paddle) else part.speed
             velocity = _speed(name, value, fastest)
-        command_part(self._state, self._tables, names[name], velocity)
+        command_part(self._state, names[name], velocity)
 
     def enable(self, name: str, on: bool) -> None:
         """Switch an element on or off: one that is off is not hit, and a ball that it supports falls. On after `reset`.
@@ -158,7 +158,7 @@ class World:
                     cleared(self.scene, self._cores(), x, y, disabled=others)
         disabled[0, index] = not on
         self._switch_ends()
-        resolve_all(self._state, self._tables)
+        resolve_all(self._state)
 
     def push(self, change: npt.ArrayLike) -> None:
         """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now.
@@ -169,7 +169,7 @@ class World:
         rows = numbers(change)
         if rows is None or rows.shape != (2,) or not (abs(rows) <= LARGEST).all():
             raise ValueError(f"push = {shown(change)}: must be (dvx, dvy), finite, at most {LARGEST:g} m/s")
-        push_balls(self._state, self._tables, float(rows[0]), float(rows[1]))
+        push_balls(self._state, float(rows[0]), float(rows[1]))
 
     def replace(self, scene: Scene) -> None:
         """Go on in another scene: time, balls and their velocities stay; a part of the same name and kind keeps its
@@ -185,37 +185,37 @@ class World:
             raise TypeError(f"scene = {shown(scene)}: must be a Scene")
         if scene.ball.radius != self.scene.ball.radius:
             raise ValueError(f"ball.radius = {scene.ball.radius!r}: must be {self.scene.ball.radius!r} as before")
-        tables, state = _new(scene, self._balls)
+        state = pack([scene], balls=self._balls, switches=True)
         old, new = self._state.worlds[0], state.worlds[0]
         for name in ("time_hi", "time_lo", "bounces", "speed_capped", "drag_hi", "drag_lo"):
             new[name] = old[name]
-        self._move_parts(scene, state, tables)
+        self._move_parts(scene, state)
         balls, cores = self._now()[0], np.empty((len(scene.parts), 4))
-        view(state, tables, 0, np.empty((0, 4)), cores)
+        view(state, 0, np.empty((0, 4)), cores)
         for k, (x, y, vx, vy) in enumerate(balls.tolist()):
             if self._state.balls[0, k].status != OUT:
                 x, y = cleared(scene, _cores_by_index(scene, cores), x, y)  # noqa: PLW2901
-            place_ball(state, tables, k, x, y, vx, vy)
+            place_ball(state, k, x, y, vx, vy)
         out = self._state.balls["status"][0] == OUT
         state.balls[0, out] = self._state.balls[0, out]
         for m in range(len(scene.parts)):
-            resume_as_told(state, tables, m)
-        self.scene, self._tables, self._state, self._parts = scene, tables, state, scene.parts
+            resume_as_told(state, m)
+        self.scene, self._state, self._parts = scene, state, scene.parts
 
-    def _move_parts(self, scene: Scene, state: State, tables: Tables) -> None:
+    def _move_parts(self, scene: Scene, state: State) -> None:
         """Put the parts of a new scene, at rest, where those of the same name are, with their commands."""
-        if state.motions is None or tables.parts is None:
+        if state.motions is None or state.parts is None:
             return
         known = {part.name: m for m, (_, part) in enumerate(self._parts) if part.name}
         for m, (_, part) in enumerate(scene.parts):
-            motion, row = state.motions[0, m], tables.parts[0, m]
+            motion, row = state.motions[0, m], state.parts[0, m]
             motion.offset, motion.command = row.start, row.shuttle
             motion.hi, motion.lo = state.worlds[0].time_hi, state.worlds[0].time_lo
             before = known.get(part.name, -1)
             if isinstance(part, Wall):
                 assert state.ends is not None
-                assert tables.guides is not None
-                self._move_wall(part, before, state.ends[0, m], tables.guides[0, m])
+                assert state.guides is not None
+                self._move_wall(part, before, state.ends[0, m], state.guides[0, m])
             elif before >= 0 and type(self._parts[before][1]) is type(part):
                 assert self._state.motions is not None
                 was = self._state.motions[0, before]
@@ -279,7 +279,7 @@ class World:
     def _switch_ends(self) -> None:
         """An end that several elements share is, when the first of them is switched off, that of the next one."""
         assert self._state.disabled is not None
-        switch_ends(self._tables, self.scene, np.flatnonzero(self._state.disabled[0]).tolist())
+        switch_ends(self._state, self.scene, np.flatnonzero(self._state.disabled[0]).tolist())
 
     def _cores(self) -> dict[int, Core]:
         return _cores_by_index(self.scene, self._now()[1])
@@ -287,7 +287,7 @@ class World:
     def _now(self) -> tuple[Floats, Floats]:
         self._check_started()
         balls, cores = np.empty((self._balls, 4)), np.empty((len(self._parts), 4))
-        view(self._state, self._tables, 0, balls, cores)
+        view(self._state, 0, balls, cores)
         return balls, cores
 
     def _rows(self, name: str, value: npt.ArrayLike) -> Floats:
@@ -303,11 +303,6 @@ class World:
     def _check_started(self) -> None:
         if not self._started:
             raise RuntimeError("reset the world before anything else")
-
-
-def _new(scene: Scene, balls: int) -> tuple[Tables, State]:
-    tables = pack([scene])
-    return tables, new_state(tables, 1, balls, point=scene.ball.radius == 0.0, switches=True)
 
 
 def _cores_by_index(scene: Scene, cores: Floats) -> dict[int, Core]:

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.compile.jit import kernel
+from bounce_env.engine.compile.jit import borrow, kernel
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import DONE, clear_hits, restart, resume, run
 from bounce_env.engine.memory.records import Array
-from bounce_env.engine.memory.state import State, Tables, borrow_state, borrow_tables, new_state
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import later
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack
@@ -20,22 +20,22 @@ Floats = npt.NDArray[np.float64]
 
 
 @kernel
-def _reset(state: State, tables: Tables, position: Floats, velocity: Floats) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
+def _reset(state: State, position: Floats, velocity: Floats) -> None:
+    state = borrow(state)
     for w in range(position.shape[0]):
-        restart(state, tables, w)
-        place(state, tables, w, 0, position[w, 0], position[w, 1], velocity[w, 0], velocity[w, 1])
+        restart(state, w)
+        place(state, w, 0, position[w, 0], position[w, 1], velocity[w, 0], velocity[w, 1])
 
 
 @kernel
-def _advance(state: State, tables: Tables, seconds: float, max_events: int) -> int:
-    state, tables = borrow_state(state), borrow_tables(tables)
+def _advance(state: State, seconds: float, max_events: int) -> int:
+    state = borrow(state)
     unfinished = 0
     for w in range(state.worlds.shape[0]):
         clear_hits(state, w)
         resume(state, w)
         hi, lo = later(state.worlds[w].time_hi, state.worlds[w].time_lo, seconds)
-        unfinished += run(state, tables, w, hi, lo, max_events, None) != DONE
+        unfinished += run(state, w, hi, lo, max_events, None) != DONE
     return unfinished
 
 
@@ -48,11 +48,10 @@ class Worlds:
 
     def __init__(self, scenes: Sequence[Scene], scene_of: npt.ArrayLike) -> None:
         self.scenes = tuple(scenes)
-        self.tables = pack(self.scenes)
         index = np.asarray(scene_of, np.int64)
         if index.ndim != 1 or index.size == 0 or index.min() < 0 or index.max() >= len(self.scenes):
             raise ValueError(f"scene_of: must be one index from 0 to {len(self.scenes) - 1} per world")
-        self.state = new_state(self.tables, index.size, 1, point=self.scenes[0].ball.radius == 0.0)
+        self.state = pack(self.scenes, index.size)
         self.state.worlds["scene"] = index
 
     def reset(self, position: npt.ArrayLike, velocity: npt.ArrayLike) -> None:
@@ -67,18 +66,18 @@ class Worlds:
         for row, s in zip(at, self.state.worlds["scene"].tolist(), strict=True):
             scene = self.scenes[s]
             row[:] = cleared(scene, cores_at_start(scene), float(row[0]), float(row[1]))
-        _reset(self.state, self.tables, at, speed)
+        _reset(self.state, at, speed)
 
     def advance(self, seconds: float, max_events: int = 1_000_000) -> int:
         """Let `seconds` pass in every world; returns how many ran out of `max_events` before."""
-        return int(_advance(self.state, self.tables, float(seconds), max_events))
+        return int(_advance(self.state, float(seconds), max_events))
 
     @property
     def balls(self) -> Floats:
         """x, y [m], vx, vy [m/s] of every world's ball now, shape (worlds, 4)."""
         rows = np.empty((len(self.state.worlds), 4))
         for w in range(len(rows)):
-            view(self.state, self.tables, w, rows[w : w + 1], np.empty((0, 4)))
+            view(self.state, w, rows[w : w + 1], np.empty((0, 4)))
         return rows
 
     @property

@@ -5,24 +5,24 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.compile.jit import kernel
+from bounce_env.engine.compile.jit import borrow, kernel
 from bounce_env.engine.events.commands import command, command_ends
 from bounce_env.engine.events.crushing import free_all
 from bounce_env.engine.events.flights import disturb, place
 from bounce_env.engine.events.loop import clear_hits, restart, resume, run
 from bounce_env.engine.events.part_stops import resume_part
-from bounce_env.engine.memory.state import State, Tables, borrow_state, borrow_tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import later
 
 Floats = npt.NDArray[np.float64]
 
 
 @kernel
-def reset_world(state: State, tables: Tables, position: Floats, velocity: Floats) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    restart(state, tables, 0)
+def reset_world(state: State, position: Floats, velocity: Floats) -> None:
+    state = borrow(state)
+    restart(state, 0)
     for k in range(position.shape[0]):
-        place(state, tables, 0, k, position[k, 0], position[k, 1], velocity[k, 0], velocity[k, 1])
+        place(state, 0, k, position[k, 0], position[k, 1], velocity[k, 0], velocity[k, 1])
 
 
 @kernel
@@ -35,50 +35,48 @@ def begin_call(state: State, seconds: float) -> tuple[float, float]:
 
 
 @kernel
-def advance_to(state: State, tables: Tables, hi: float, lo: float, max_events: int, ledger: Any) -> int:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    code: int = run(state, tables, 0, hi, lo, max_events, ledger)
+def advance_to(state: State, hi: float, lo: float, max_events: int, ledger: Any) -> int:
+    state = borrow(state)
+    code: int = run(state, 0, hi, lo, max_events, ledger)
     return code
 
 
 @kernel
-def push_balls(state: State, tables: Tables, dvx: float, dvy: float) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
+def push_balls(state: State, dvx: float, dvy: float) -> None:
+    state = borrow(state)
     for k in range(state.balls.shape[1]):
-        disturb(state, tables, 0, k, 1.0, dvx, dvy)
+        disturb(state, 0, k, 1.0, dvx, dvy)
 
 
 @kernel
-def resolve_all(state: State, tables: Tables) -> None:
+def resolve_all(state: State) -> None:
     """Resolve every ball anew: an element has been switched on or off."""
-    state, tables = borrow_state(state), borrow_tables(tables)
-    free_all(state, tables, state.motions, tables.parts, 0)
+    state = borrow(state)
+    free_all(state, state.motions, state.parts, 0)
     for k in range(state.balls.shape[1]):
-        disturb(state, tables, 0, k, 1.0, 0.0, 0.0)
+        disturb(state, 0, k, 1.0, 0.0, 0.0)
 
 
 @kernel
-def place_ball(state: State, tables: Tables, k: int, x: float, y: float, vx: float, vy: float) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    place(state, tables, 0, k, x, y, vx, vy)
+def place_ball(state: State, k: int, x: float, y: float, vx: float, vy: float) -> None:
+    state = borrow(state)
+    place(state, 0, k, x, y, vx, vy)
 
 
 @kernel
-def command_part(state: State, tables: Tables, part: int, velocity: float) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    command(state, tables, state.motions, tables.parts, 0, part, velocity)
+def command_part(state: State, part: int, velocity: float) -> None:
+    state = borrow(state)
+    command(state, state.motions, state.parts, 0, part, velocity)
 
 
 @kernel
-def command_wall(state: State, tables: Tables, part: int, velocities: Floats) -> None:
-    state, tables = borrow_state(state), borrow_tables(tables)
-    command_ends(
-        state, tables, state.ends, 0, part, velocities[0, 0], velocities[0, 1], velocities[1, 0], velocities[1, 1]
-    )
+def command_wall(state: State, part: int, velocities: Floats) -> None:
+    state = borrow(state)
+    command_ends(state, state.ends, 0, part, velocities[0, 0], velocities[0, 1], velocities[1, 0], velocities[1, 1])
 
 
 @kernel
-def resume_as_told(state: State, tables: Tables, part: int) -> None:
+def resume_as_told(state: State, part: int) -> None:
     """Let a part move on as it was commanded to, before any flight is planned: no ball has to mind it yet."""
-    state, tables = borrow_state(state), borrow_tables(tables)
-    resume_part(state, tables, state.motions, tables.parts, 0, part)
+    state = borrow(state)
+    resume_part(state, state.motions, state.parts, 0, part)

@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from bounce_env.engine.compile.jit import interpreted
 from bounce_env.engine.memory.records import Array
-from bounce_env.engine.memory.state import State, new_state
+from bounce_env.engine.memory.state import State, moving
 from bounce_env.engine.motion.readout import view
+from bounce_env.engine.packing import pack
 from bounce_env.games.clone import States, check_rows, clone_rows, restore_rows
 from bounce_env.games.episode import (
     END_REASONS,
@@ -48,11 +49,9 @@ class Batch:
         self.game = game
         self.worlds = worlds
         self.autoreset = autoreset
-        point = game.scenes[0].ball.radius == 0.0
-        self.tables, self.rules = game.for_worlds(worlds)
-        self._written = game.written(self.tables, self.rules)
-        self.state: State = new_state(self.tables, worlds, 1, point)
-        self._own_scenes()
+        self.rules = game.rules_for(worlds)
+        self.state: State = pack(game.scenes, worlds, own_rows=game.owns_scenes)
+        self._written = game.written(self.state, self.rules)
         self.episodes: Array = np.zeros(worlds, EPISODE)
         self.results: Results = new_results(worlds, len(game.observation_high), len(game.counters))
         self.memory: Array | None = None if game.memory is None else np.zeros(worlds, game.memory)
@@ -66,11 +65,6 @@ class Batch:
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_threads": None, "_handle": None}
-
-    def _own_scenes(self) -> None:
-        """Where scenes are written at each beginning, world w has row w of the tables for itself."""
-        if self._written:
-            self.state.worlds["scene"] = np.arange(self.worlds)
 
     def limit_steps(self, steps: int | None) -> None:
         """Truncate episodes after so many steps, if nothing else ends them before; None: never."""
@@ -96,9 +90,7 @@ class Batch:
         return self._handle
 
     def _all(self) -> Worlds:
-        return Worlds(
-            self.state, self.tables, self.episodes, self.memory, self.held, self.counters, self._start, self.results
-        )
+        return Worlds(self.state, self.episodes, self.memory, self.held, self.counters, self._start, self.results)
 
     def note_cut(self, world: int) -> None:
         """Let `end_info` tell of a world's episode as one that was cut by time, though its state goes on."""
@@ -137,7 +129,8 @@ class Batch:
         """Let the worlds of `mask` go on from `states`; raises ValueError as `check_states` does."""
         self.check_states(states, mask)
         restore_rows(self._rows(), mask, states)
-        self._own_scenes()
+        if self.game.owns_scenes:  # world w has row w of the tables for itself, wherever its state comes from
+            self.state.worlds["scene"] = np.arange(self.worlds)
 
     def check_states(self, states: Any, mask: Mask) -> None:
         """Raise ValueError where `states` are not of an equal batch, a row for each world of `mask`.
@@ -151,7 +144,7 @@ class Batch:
     def _rows(self) -> tuple[Array, ...]:
         """All arrays with a row for each world that steps read."""
         results = (array for name, array in zip(Results._fields, self.results, strict=True) if name != "busy")
-        arrays = (*self.state, *self._written, self.episodes, self.memory, self.held, self.counters, *results)
+        arrays = (*moving(self.state), *self._written, self.episodes, self.memory, self.held, self.counters, *results)
         return tuple(array for array in arrays if array is not None)
 
     @cached_property
@@ -183,9 +176,9 @@ class Batch:
 
     def view(self, world: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Balls (1, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of a world now."""
-        parts = self.tables.parts
+        parts = self.state.parts
         balls, cores = np.empty((1, 4)), np.empty((0 if parts is None else parts.shape[1], 4))
-        view(self.state, self.tables, world, balls, cores)
+        view(self.state, world, balls, cores)
         return balls, cores
 
     @property
@@ -209,9 +202,9 @@ class Batch:
 
     def target_places(self, world: int) -> npt.NDArray[np.float64]:
         """The centres of the game's `targets` in a world now, (n, 2) [m]."""
-        if not self.game.targets or self.tables.rings is None:
+        if not self.game.targets or self.state.rings is None:
             return np.zeros((0, 2))
-        rings = self.tables.rings[self.state.worlds["scene"][world]]
+        rings = self.state.rings[self.state.worlds["scene"][world]]
         rows = [int(np.flatnonzero(rings["element"] == index)[0]) for index in self.game.targets]
         return np.stack([rings["x"][rows], rings["y"][rows]], axis=1)
 

@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from numba.experimental import structref
 
-from bounce_env.engine.compile.jit import Record, borrow, function, kernel
+from bounce_env.engine.compile.jit import Record, function, kernel
 from bounce_env.engine.memory.records import record
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.games.streams import EPISODES, STICKY_ACTIONS, bits, uniform
 
 Array = npt.NDArray[Any]
@@ -60,16 +60,12 @@ class Worlds(NamedTuple):
     """All that a game's kernels work on, beside its rules; first axis worlds."""
 
     state: State
-    tables: Tables
     episodes: Array  # (worlds,) EPISODE
     memory: Any  # (worlds,) of the game's own record: what its rules remember; None: nothing
     held: Array  # (worlds, controls) float64: the action in force, which a sticky one repeats
     counters: Array  # (worlds, counters) float64: what the game counts in an episode
     start: Array  # (worlds, 5) x, y, vx, vy of a launch and the level in place of the seed's; NaN for the seed's own
     results: Results
-
-
-_FIELDS = ("rules", *Worlds._fields)
 
 
 @structref.register
@@ -79,35 +75,23 @@ class _HandleType(numba.types.StructRef):  # type: ignore[misc]
 
 
 class Handle(structref.StructRefProxy):  # type: ignore[misc]
-    """One object in place of thirty arrays: calling a kernel with it costs 1 us, not 10."""
+    """One object in place of fifty arrays: calling a kernel with it costs 1 us, not 10."""
 
     def __new__(cls, *parts: Any) -> Any:
         return structref.StructRefProxy.__new__(cls, *parts)
 
 
-structref.define_proxy(Handle, _HandleType, list(_FIELDS))
+structref.define_proxy(Handle, _HandleType, ["rules", "worlds"])
 
 
 @kernel
 def _bind_compiled(rules: Any, worlds: Worlds) -> Any:
-    return Handle(
-        rules,
-        worlds.state,
-        worlds.tables,
-        worlds.episodes,
-        worlds.memory,
-        worlds.held,
-        worlds.counters,
-        worlds.start,
-        worlds.results,
-    )
+    return Handle(rules, worlds)
 
 
 def bind(rules: Any, worlds: Worlds) -> Any:
     """A handle to all that a game's kernels work on; it keeps the arrays alive."""
-    return (
-        SimpleNamespace(rules=rules, **worlds._asdict()) if numba.config.DISABLE_JIT else _bind_compiled(rules, worlds)
-    )
+    return SimpleNamespace(rules=rules, worlds=worlds) if numba.config.DISABLE_JIT else _bind_compiled(rules, worlds)
 
 
 def new_results(worlds: int, size: int, counters: int) -> Results:
@@ -121,21 +105,6 @@ def new_results(worlds: int, size: int, counters: int) -> Results:
         ended=np.zeros(worlds, BOOKS),
         counted=np.zeros((worlds, counters)),
         busy=np.zeros(worlds, np.uint64),
-    )
-
-
-@function
-def borrow_results(results: Results) -> Results:
-    """The same results, borrowed; see `engine.compile.jit.borrow`."""
-    return Results(
-        borrow(results.observations),
-        borrow(results.rewards),
-        borrow(results.terminated),
-        borrow(results.truncated),
-        borrow(results.final_observations),
-        borrow(results.ended),
-        borrow(results.counted),
-        borrow(results.busy),
     )
 
 

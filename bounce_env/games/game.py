@@ -7,8 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.memory.records import Array
-from bounce_env.engine.memory.state import Tables
-from bounce_env.engine.packing import pack
+from bounce_env.engine.memory.state import State
 from bounce_env.games.actions import Actions
 from bounce_env.games.episode import FPS
 from bounce_env.games.options import Options
@@ -16,7 +15,7 @@ from bounce_env.scene import Scene, as_scene
 
 
 class Game:
-    """A game with what its user chose: scenes, tables and rules, and what an agent sees and does.
+    """A game with what its user chose: scenes and rules, and what an agent sees and does.
 
     Raises SceneError where the scene cannot be read; a game raises ValueError where it cannot be played.
 
@@ -31,6 +30,7 @@ class Game:
     counters: ClassVar[tuple[str, ...]]  # what is told at an episode's end of what the game has counted
     memory: ClassVar[np.dtype[Any] | None] = None  # what its rules remember of a world
     has_levels: bool = False
+    owns_scenes: bool = False  # whether the kernel writes a scene of its own for each world
     targets: tuple[int, ...] = ()
     hidden: tuple[int, ...] = ()
 
@@ -43,7 +43,6 @@ class Game:
     def __init__(self, options: Options) -> None:
         self.options = options
         self.scenes: tuple[Scene, ...] = (as_scene(self.default_scene if options.scene is None else options.scene),)
-        self.tables: Tables = pack(self.scenes)
         self.step_seconds = options.frame_skip / FPS
 
     @property
@@ -51,12 +50,12 @@ class Game:
         """The built-in scene that is played where the user chose none."""
         raise NotImplementedError
 
-    def for_worlds(self, worlds: int) -> tuple[Tables, Any]:
-        """Tables and rules for a batch of so many worlds."""
-        return self.tables, self.rules
+    def rules_for(self, worlds: int) -> Any:
+        """The rules for a batch of so many worlds."""
+        return self.rules
 
-    def written(self, tables: Tables, rules: Any) -> tuple[Array, ...]:
-        """What `begin` writes of a batch's tables and rules, a row for each world; () where all play one scene."""
+    def written(self, state: State, rules: Any) -> tuple[Array, ...]:
+        """What `begin` writes of a batch's scenes and rules, a row for each world; () where nothing is."""
         return ()
 
     def scene_on(self, level: int | None) -> Scene:
@@ -86,8 +85,3 @@ class Game:
 def clock(seconds: float) -> str:
     """A time as a clock shows it: 1:05."""
     return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"
-
-
-def repeated(tables: Tables, worlds: int) -> Tables:
-    """The tables of one scene, a row of each for each world."""
-    return Tables._make(None if table is None else np.repeat(table, worlds, axis=0) for table in tables)

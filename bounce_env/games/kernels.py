@@ -7,7 +7,6 @@ import numpy as np
 
 from bounce_env.engine.compile.jit import borrow, function, kernel
 from bounce_env.engine.memory.records import Array
-from bounce_env.engine.memory.state import borrow_state, borrow_tables
 from bounce_env.games.episode import (
     ALL_PLAYED,
     DRAINED,
@@ -17,7 +16,6 @@ from bounce_env.games.episode import (
     SAME_STEP,
     TIME_LIMIT,
     Worlds,
-    borrow_results,
     close_books,
     open_books,
 )
@@ -46,30 +44,10 @@ def observe(rules: Any, worlds: Worlds, w: int, out: Array) -> None:
     """See `games.rules`."""
 
 
-@of_game
-def borrow_rules(rules: Any) -> Any:
-    """See `games.rules`."""
-
-
-@function
-def _borrowed(handle: Any) -> Worlds:
-    """All that the handle holds but the rules, borrowed; see `engine.compile.jit.borrow`."""
-    return Worlds(
-        borrow_state(handle.state),
-        borrow_tables(handle.tables),
-        borrow(handle.episodes),
-        borrow(handle.memory),
-        borrow(handle.held),
-        borrow(handle.counters),
-        borrow(handle.start),
-        borrow_results(handle.results),
-    )
-
-
 @kernel
 def reset_worlds(handle: Any, mask: Array) -> None:
     """Begin an episode in every world that `mask` names, launched as `handle.start` says."""
-    worlds, rules = _borrowed(handle), borrow_rules(handle.rules)
+    worlds, rules = borrow(handle.worlds), borrow(handle.rules)
     results = worlds.results
     for w in range(mask.shape[0]):
         if mask[w]:
@@ -88,7 +66,7 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
     whose episode has ended is reset in place of a step (NEXT_STEP), was reset at its end (SAME_STEP), or must have been
     reset by the caller (DISABLED).
     """
-    worlds, rules = _borrowed(handle), borrow_rules(handle.rules)
+    worlds, rules = borrow(handle.worlds), borrow(handle.rules)
     results, episodes = worlds.results, worlds.episodes
     if not _all_finite(actions):
         return -1

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.compile.jit import Record, Table, borrow, from_python, function
+from bounce_env.engine.compile.jit import Record, Table, from_python, function
 from bounce_env.engine.memory.records import Array, record
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import offset_at
 from bounce_env.games.field import place_seen
 from bounce_env.games.streams import LAYOUTS, LEVELS, uniform
@@ -52,12 +52,6 @@ class Levels(NamedTuple):
     gap: float  # [m] between bumpers and to the walls
     number: int  # how many levels there are, 0 for all; NONE: the bumpers stay where the scene has them
     first: int  # the number of the first
-
-
-@function
-def borrow_levels(levels: Levels) -> Levels:
-    """The same, borrowed; see `engine.compile.jit.borrow`."""
-    return Levels(borrow(levels.bumpers), borrow(levels.area), levels.gap, levels.number, levels.first)
 
 
 def levels_of(scene: Scene, field: tuple[float, float, float, float], count: int | None, first: int) -> Levels:
@@ -116,13 +110,13 @@ def drawn_level(levels: Levels, seed: Any) -> int:
 
 
 @function
-def enter_level(levels: Levels, tables: Tables, scene: int, level: int) -> None:
+def enter_level(levels: Levels, state: State, scene: int, level: int) -> None:
     """Write the bumpers of a level into the tables of a scene."""
     arrange(levels.bumpers, levels, scene, level, MANY)
     for j in range(levels.bumpers.shape[1]):
         bumper = levels.bumpers[scene, j]
-        _put_circle(tables.circles, scene, bumper)
-        _put_part(tables.parts, scene, bumper)
+        _put_circle(state.circles, scene, bumper)
+        _put_part(state.parts, scene, bumper)
 
 
 @function
@@ -206,7 +200,7 @@ def bumper_bounds(levels: Levels) -> list[float]:
 
 
 @function
-def observe_bumpers(levels: Levels, state: State, tables: Tables, field: Record, w: int, out: Array, i: int) -> None:
+def observe_bumpers(levels: Levels, state: State, field: Record, w: int, out: Array, i: int) -> None:
     """Into `out[w, i]` and on: each bumper's place now; of one on a rail its velocity and where it turns back, too."""
     scene = state.worlds[w].scene
     for j in range(levels.bumpers.shape[1]):
@@ -214,7 +208,7 @@ def observe_bumpers(levels: Levels, state: State, tables: Tables, field: Record,
         if bumper.part < 0:
             i = _observe_place(field, bumper.x0, bumper.y0, w, out, i)
         else:
-            i = _observe_rider(state, state.motions, tables.parts, field, bumper.part, w, out, i)
+            i = _observe_rider(state, state.motions, state.parts, field, bumper.part, w, out, i)
             i = _observe_place(field, bumper.x0, bumper.y0, w, out, i)
             i = _observe_place(field, bumper.x1, bumper.y1, w, out, i)
 

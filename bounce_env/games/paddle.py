@@ -11,7 +11,7 @@ from bounce_env.engine.events.commands import command, command_unwatched
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import DONE, clear_hits, is_calm, restart, resume, run
 from bounce_env.engine.memory.records import OUT, Array
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import offset_at
 from bounce_env.engine.motion.readout import ball_now, core_now
 from bounce_env.engine.motion.sincos import sin_cos
@@ -27,7 +27,7 @@ from bounce_env.games.episode import (
     open_books,
 )
 from bounce_env.games.field import place_seen, speed_bound
-from bounce_env.games.game import Game, repeated
+from bounce_env.games.game import Game
 from bounce_env.games.levels import (
     NONE,
     bumper_bounds,
@@ -48,7 +48,6 @@ from bounce_env.games.paddle_rules import (
     REFERENCE_SPEED,
     TOUCHES,
     Rules,
-    borrow_rules,
     field_of,
     new_rules,
 )
@@ -62,13 +61,13 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     """Ball, paddle and bumpers, each number scaled so that usual values spread over [-1, 1]."""
     state = worlds.state
     field = rules.fields[state.worlds[w].scene]
-    x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
+    x, y, vx, vy = ball_now(state, w, 0)
     out[w, 0], out[w, 1] = place_seen(field, x, y)
     out[w, 2] = vx * (1.0 / REFERENCE_SPEED)
     out[w, 3] = vy * (1.0 / REFERENCE_SPEED)
     # The product may exceed the ends of the range by its rounding.
     out[w, 4] = min(max(paddle_offset(state, state.motions, field.part, w) * field.rail_scale - 1.0, -1.0), 1.0)
-    observe_bumpers(rules.levels, state, worlds.tables, field, w, out, OBSERVATION_SIZE)
+    observe_bumpers(rules.levels, state, field, w, out, OBSERVATION_SIZE)
     if rules.pace.repeat > 0.0:
         out[w, out.shape[1] - 1] = clipped(worlds.held[w, 0])
 
@@ -94,7 +93,7 @@ def launch(rules: Rules, worlds: Worlds, seed: Any, w: int) -> None:
         x, y = start[w, 0], start[w, 1]
     if not math.isnan(start[w, 2]):
         vx, vy = start[w, 2], start[w, 3]
-    place(worlds.state, worlds.tables, w, 0, x, y, vx, vy)
+    place(worlds.state, w, 0, x, y, vx, vy)
 
 
 @function
@@ -103,7 +102,7 @@ def begin(rules: Rules, worlds: Worlds, w: int) -> None:
     episode = begin_episode(worlds, w)
     if rules.levels.number != NONE:
         begin_level(rules, worlds, w)
-    restart(worlds.state, worlds.tables, w)
+    restart(worlds.state, w)
     launch(rules, worlds, episode.seed, w)
 
 
@@ -112,7 +111,7 @@ def begin_level(rules: Rules, worlds: Worlds, w: int) -> None:
     """Arrange the bumpers of world `w`: of the level that `worlds.start` says, where that is NaN of the seed's."""
     episode, asked = worlds.episodes[w], worlds.start[w, 4]
     episode.level = drawn_level(rules.levels, episode.seed) if math.isnan(asked) else int(asked)
-    enter_level(rules.levels, worlds.tables, worlds.state.worlds[w].scene, episode.level)
+    enter_level(rules.levels, worlds.state, worlds.state.worlds[w].scene, episode.level)
 
 
 @function
@@ -120,10 +119,10 @@ def potential(rules: Rules, worlds: Worlds, w: int) -> float:
     """-1 to 0: the less, the further the paddle's middle is along its rail from beneath the ball; 0 when it is lost."""
     if worlds.episodes[w].end == DRAINED:
         return 0.0
-    state, tables = worlds.state, worlds.tables
+    state = worlds.state
     field = rules.fields[state.worlds[w].scene]
-    x, y, _, _ = ball_now(state, tables, w, 0)
-    x0, y0, x1, y1 = core_now(state.motions, tables.parts, tables.turns, state.ends, w, state.worlds[w], field.part)
+    x, y, _, _ = ball_now(state, w, 0)
+    x0, y0, x1, y1 = core_now(state.motions, state.parts, state.turns, state.ends, w, state.worlds[w], field.part)
     away = (x - 0.5 * (x0 + x1)) * field.rail_ux + (y - 0.5 * (y0 + y1)) * field.rail_uy
     return -abs(away) / field.across
 
@@ -141,7 +140,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
 @function
 def _play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     """The same, without shaping: returns the points."""
-    state, tables, episode = worlds.state, worlds.tables, worlds.episodes[w]
+    state, episode = worlds.state, worlds.episodes[w]
     clear_hits(state, w)
     resume(state, w)
     part = rules.fields[state.worlds[w].scene].part
@@ -151,10 +150,10 @@ def _play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     episode.steps += 1
     while episode.frames < last:
         hold_action(worlds, actions, w, rules.pace.repeat)
-        move(state, tables, state.motions, tables.parts, part, w, clipped(worlds.held[w, 0]))
+        move(state, state.motions, state.parts, part, w, clipped(worlds.held[w, 0]))
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
-        code = run(state, tables, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
+        code = run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
         if code != DONE or state.balls[w, 0].status == OUT:
             break
     points = count_points(rules, worlds, w)
@@ -179,16 +178,16 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     """
     if rules.shaping > 0.0:
         return False
-    state, tables, results = worlds.state, worlds.tables, worlds.results
+    state, results = worlds.state, worlds.results
     episode, world = worlds.episodes[w], state.worlds[w]
     frames = episode.frames + rules.pace.frame_skip
     if episode.end != RUNNING or frames >= rules.pace.limit or episode.steps + 1 >= rules.pace.steps:
         return False
     until = frames / rules.pace.fps
     action = clipped(actions[w, 0])
-    if rules.pace.repeat > 0.0 or not steer(state, tables, tables.parts, rules.fields[world.scene].part, w, action):
+    if rules.pace.repeat > 0.0 or not steer(state, state.parts, rules.fields[world.scene].part, w, action):
         return False
-    if not is_calm(state.balls, state.pairs, state.motions, tables.parts, w, world.scene, until, 0.0):
+    if not is_calm(state.balls, state.pairs, state.motions, state.parts, w, world.scene, until, 0.0):
         return False
     clear_hits(state, w)
     # An episode that ended in the last step has been followed by a new one, of which this is the first step.
@@ -202,21 +201,21 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
 
 
 @function
-def steer(state: State, tables: Tables, parts: Table, m: int, w: int, action: float) -> bool:
+def steer(state: State, parts: Table, m: int, w: int, action: float) -> bool:
     """As `move`, where no ball is near the paddle; otherwise it does nothing and returns False."""
     if parts is None:
         return True
     world = state.worlds[w]
     velocity = action * parts[world.scene, m].up_speed
-    return command_unwatched(world, state.motions, parts, state.zones, tables.drags, w, m, velocity)
+    return command_unwatched(world, state.motions, parts, state.zones, state.drags, w, m, velocity)
 
 
 @function
-def move(state: State, tables: Tables, motions: Any, parts: Any, m: int, w: int, action: float) -> None:
+def move(state: State, motions: Any, parts: Any, m: int, w: int, action: float) -> None:
     """Let the paddle move at `action` (-1 to 1) times its greatest speed."""
     if motions is None or parts is None:
         return
-    command(state, tables, motions, parts, w, m, action * parts[state.worlds[w].scene, m].up_speed)
+    command(state, motions, parts, w, m, action * parts[state.worlds[w].scene, m].up_speed)
 
 
 @function
@@ -233,11 +232,11 @@ def count_points(rules: Rules, worlds: Worlds, w: int) -> float:
     return reward
 
 
-is_game(Rules, begin=begin, play=play, glide=glide, observe=observe, borrow_rules=borrow_rules)
+is_game(Rules, begin=begin, play=play, glide=glide, observe=observe)
 
 
 class PaddleGame(Game):
-    """The paddle game for a batch: scene, tables and rules, and what an agent sees and does.
+    """The paddle game for a batch: scene and rules, and what an agent sees and does.
 
     Raises ValueError where the scene cannot be played (`field_of`), SceneError where it cannot be read.
     """
@@ -246,7 +245,7 @@ class PaddleGame(Game):
     counters = ("points_bumpers", "touches")
 
     def __init__(self, options: PaddleOptions) -> None:
-        self.has_levels = options.num_levels is not None
+        self.has_levels = self.owns_scenes = options.num_levels is not None
         super().__init__(options)
         self.rules = new_rules(self.scenes[0], options)
         x, y, width, height = field_of(self.scenes[0])
@@ -266,21 +265,19 @@ class PaddleGame(Game):
         """With levels that with a bumper on a rail."""
         return "paddle_levels" if self.has_levels else "paddle"
 
-    def for_worlds(self, worlds: int) -> tuple[Tables, Rules]:
-        """With levels each world has its own row of every table."""
+    def rules_for(self, worlds: int) -> Rules:
+        """With levels each world has a field of its own, for its own bumpers."""
         if not self.has_levels:
-            return self.tables, self.rules
+            return self.rules
         rules, rows = self.rules, partial(np.repeat, repeats=worlds, axis=0)
         levels = rules.levels._replace(bumpers=rows(rules.levels.bumpers))
-        return repeated(self.tables, worlds), rules._replace(
-            fields=rows(rules.fields), points=rows(rules.points), levels=levels
-        )
+        return rules._replace(fields=rows(rules.fields), points=rows(rules.points), levels=levels)
 
-    def written(self, tables: Tables, rules: Rules) -> tuple[Array, ...]:
+    def written(self, state: State, rules: Rules) -> tuple[Array, ...]:
         """Where the bumpers of a level are."""
         if not self.has_levels:
             return ()
-        return tuple(a for a in (rules.levels.bumpers, tables.circles, tables.parts) if a is not None)
+        return tuple(a for a in (rules.levels.bumpers, state.circles, state.parts) if a is not None)
 
     def scene_on(self, level: int | None) -> Scene:
         """The scene with its bumpers where they are on the level."""

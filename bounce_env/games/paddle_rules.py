@@ -5,10 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.compile.jit import borrow, function
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.packing import direction
-from bounce_env.games.levels import Levels, borrow_levels, levels_of
+from bounce_env.games.levels import Levels, levels_of
 from bounce_env.games.options import PaddleOptions
 from bounce_env.games.pace import Pace, pace_of
 from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
@@ -45,19 +44,6 @@ class Rules(NamedTuple):
     pace: Pace
     shaping: float  # 1 where the reward is shaped by how far the paddle is from beneath the ball, otherwise 0
     gamma: float  # of the shaping
-
-
-@function
-def borrow_rules(rules: Rules) -> Rules:
-    """The same rules, borrowed; see `engine.compile.jit.borrow`."""
-    return Rules(
-        borrow(rules.fields),
-        borrow_levels(rules.levels),
-        borrow(rules.points),
-        rules.pace,
-        rules.shaping,
-        rules.gamma,
-    )
 
 
 def field_of(scene: Scene) -> tuple[float, float, float, float]:

@@ -55,7 +55,6 @@ from bounce_env.games.pinball_rules import (
     TILT_PER_FRAME,
     TILTS,
     Rules,
-    borrow_rules,
     hold_timer,
     rest_left,
     save_left,
@@ -84,7 +83,7 @@ def begin(rules: Rules, worlds: Worlds, w: int) -> None:
     """Begin the next episode of world `w`."""
     begin_episode(worlds, w)
     memory = worlds.memory[w]
-    restart(worlds.state, worlds.tables, w)
+    restart(worlds.state, w)
     memory.passed, memory.pressed = 0, 0
     memory.left_ready, memory.right_ready = 0, 0
     table = rules.layout.tables[worlds.state.worlds[w].scene]
@@ -117,7 +116,7 @@ def shoot(rules: Rules, worlds: Worlds, w: int) -> None:
     memory.launches += 1
     memory.shot, memory.born, memory.scored, memory.zone = episode.frames, episode.frames, episode.frames, -1
     clear_hits(worlds.state, w)
-    place(worlds.state, worlds.tables, w, 0, x, y, vx, vy)
+    place(worlds.state, w, 0, x, y, vx, vy)
 
 
 @function
@@ -150,7 +149,7 @@ def press(rules: Rules, worlds: Worlds, motions: Table, parts: Table, w: int, bu
         if side:
             part = parts[scene, m]
             velocity = part.up_speed if buttons & side else -part.down_speed
-            command(worlds.state, worlds.tables, motions, parts, w, m, velocity)
+            command(worlds.state, motions, parts, w, m, velocity)
     pressed_now, let_go = buttons & ~memory.pressed, memory.pressed & ~buttons
     worlds.counters[w, FLIPS] += (pressed_now & 1) + (pressed_now >> 1)
     ready = worlds.episodes[w].frames + REST_FRAMES
@@ -185,7 +184,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
 
     The frames in which a ball is on its way out of the lane are none of the step's: no action matters in them.
     """
-    state, tables, episode, memory = worlds.state, worlds.tables, worlds.episodes[w], worlds.memory[w]
+    state, episode, memory = worlds.state, worlds.episodes[w], worlds.memory[w]
     reward = 0.0
     frames = rules.pace.frame_skip
     episode.steps += 1
@@ -198,11 +197,11 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
             frames -= 1
             hold_action(worlds, actions, w, rules.pace.repeat)
             buttons = in_force(rules, worlds, w, int(worlds.held[w, 0]))
-        press(rules, worlds, state.motions, tables.parts, w, buttons)
+        press(rules, worlds, state.motions, state.parts, w, buttons)
         resume(state, w)
         episode.frames += 1
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
-        code = run(state, tables, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
+        code = run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
         if code != DONE:
             episode.end = OUT_OF_BUDGET
         elif memory.serving:
@@ -260,7 +259,7 @@ def mind_time(rules: Rules, worlds: Worlds, w: int) -> None:
 def in_zone(rules: Rules, worlds: Worlds, w: int) -> bool:
     """Whether the ball's centre is where a flipper may hold it."""
     table = rules.layout.tables[worlds.state.worlds[w].scene]
-    x, y, _, _ = ball_now(worlds.state, worlds.tables, w, 0)
+    x, y, _, _ = ball_now(worlds.state, w, 0)
     return table.zone_left <= x <= table.zone_right and y <= table.zone_top
 
 
@@ -277,7 +276,7 @@ def nudge(worlds: Worlds, w: int, buttons: int) -> None:
         memory.tilted = 1
         worlds.counters[w, TILTS] += 1
     side = (1 if buttons & NUDGE_RIGHT else 0) - (1 if buttons & NUDGE_LEFT else 0)
-    disturb(worlds.state, worlds.tables, w, 0, 1.0, NUDGE[0] * side, NUDGE[1])
+    disturb(worlds.state, w, 0, 1.0, NUDGE[0] * side, NUDGE[1])
 
 
 @function
@@ -298,7 +297,7 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     if frames - memory.scored >= STUCK_FRAMES or not falls_from_high(rules, worlds, w):
         return False
     until = frames / rules.pace.fps
-    if not is_calm(state.balls, state.pairs, state.motions, worlds.tables.parts, w, world.scene, until, 0.0):
+    if not is_calm(state.balls, state.pairs, state.motions, worlds.state.parts, w, world.scene, until, 0.0):
         return False
     hi, lo = world.time_hi, world.time_lo
     world.time_hi, world.time_lo = until, 0.0
@@ -320,14 +319,14 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
 def falls_from_high(rules: Rules, worlds: Worlds, w: int) -> bool:
     """Whether the ball is above the flippers' zone, to whichever side, in a flight that does not bend upwards."""
     table = rules.layout.tables[worlds.state.worlds[w].scene]
-    return worlds.state.balls[w, 0].ay <= 0.0 and ball_now(worlds.state, worlds.tables, w, 0)[1] > table.zone_top
+    return worlds.state.balls[w, 0].ay <= 0.0 and ball_now(worlds.state, w, 0)[1] > table.zone_top
 
 
-is_game(Rules, begin=begin, play=play, glide=glide, observe=observe, borrow_rules=borrow_rules)
+is_game(Rules, begin=begin, play=play, glide=glide, observe=observe)
 
 
 class PinballGame(Game):
-    """The pinball game for a batch: scene, tables and rules, and what an agent sees and does.
+    """The pinball game for a batch: scene and rules, and what an agent sees and does.
 
     Raises ValueError where the scene cannot be played (`games.table`), SceneError where it cannot be read.
     """

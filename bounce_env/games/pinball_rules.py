@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from bounce_env.engine.compile.jit import borrow, function
+from bounce_env.engine.compile.jit import function
 from bounce_env.engine.memory.records import record
 from bounce_env.games.episode import FPS
 from bounce_env.games.pace import Pace
@@ -53,27 +53,6 @@ class Rules(NamedTuple):
     balls: int
     nudge: int  # 1 where the table can be nudged
     loss: float  # reward for a ball that is lost, 0 or less
-
-
-@function
-def borrow_rules(rules: Rules) -> Rules:
-    """The same rules, borrowed; see `engine.compile.jit.borrow`."""
-    layout = rules.layout
-    borrowed = Layout(
-        borrow(layout.tables),
-        borrow(layout.roles),
-        borrow(layout.lamps),
-        borrow(layout.sides),
-        borrow(layout.bumpers),
-        borrow(layout.cooldowns),
-    )
-    return Rules(
-        borrowed,
-        rules.pace,
-        rules.balls,
-        rules.nudge,
-        rules.loss,
-    )
 
 
 @function

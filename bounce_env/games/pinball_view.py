@@ -37,10 +37,10 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     memory, episode, world = worlds.memory[w], worlds.episodes[w], state.worlds[w]
     scene = world.scene
     table = layout.tables[scene]
-    x, y, vx, vy = ball_now(state, worlds.tables, w, 0)
+    x, y, vx, vy = ball_now(state, w, 0)
     out[w, 0], out[w, 1] = place_seen(table, x, y)
     out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
-    i = observe_flippers(state, state.motions, worlds.tables.parts, layout, w, out, 4)
+    i = observe_flippers(state, state.motions, worlds.state.parts, layout, w, out, 4)
     out[w, i] = (rules.balls - episode.ball) / rules.balls
     out[w, i + 1] = save_left(memory, episode.frames) / SAVE_FRAMES
     out[w, i + 2] = hold_timer(memory, episode.frames) / HOLD_FRAMES

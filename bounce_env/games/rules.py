@@ -5,9 +5,7 @@ A game is a NamedTuple type of rules (all that its functions need to know beside
 * `begin(rules, worlds, w)`: the next episode of world `w` begins;
 * `play(rules, worlds, actions, w)`: one step; sets the episode's `end` where it ends, returns the reward;
 * `glide(rules, worlds, actions, w)`: the same where surely nothing happens; or does nothing, returns False;
-* `observe(rules, worlds, w, out)`: what an agent sees, into `out[w]`;
-
-and `borrow_rules(rules)`, the same rules with arrays that are not counted (see `engine.compile.jit.borrow`).
+* `observe(rules, worlds, w, out)`: what an agent sees, into `out[w]`.
 """
 
 import functools
@@ -20,7 +18,7 @@ from bounce_env.engine.compile.jit import INLINED
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-NAMES = ("begin", "play", "glide", "observe", "borrow_rules")
+NAMES = ("begin", "play", "glide", "observe")
 
 _games: dict[type, dict[str, Callable[..., Any]]] = {}
 

@@ -10,7 +10,7 @@ from bounce_env.engine.events.commands import command_ends
 from bounce_env.engine.events.loop import DONE, clear_hits, resume
 from bounce_env.engine.memory import records as layout
 from bounce_env.engine.memory.records import OUT, Array
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.readout import ball_now, core_now
 from bounce_env.games.actions import Continuous, clipped
 from bounce_env.games.episode import (
@@ -24,7 +24,7 @@ from bounce_env.games.episode import (
     hold_action,
 )
 from bounce_env.games.field import place_seen, speed_bound
-from bounce_env.games.game import Game, repeated
+from bounce_env.games.game import Game
 from bounce_env.games.options import WallsOptions
 from bounce_env.games.pace import out_of_time
 from bounce_env.games.rules import is_game
@@ -42,7 +42,6 @@ from bounce_env.games.walls_rules import (
     TOUCHES,
     WALL_SPEED,
     Rules,
-    borrow_rules,
     field_of,
     new_rules,
 )
@@ -52,11 +51,11 @@ from bounce_env.games.walls_serve import advance, serve, target_of
 @function
 def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     """Ball, the wall's ends, target, time and balls that are left: see the card of `bounce_env.cards.WallsEnv`."""
-    state, tables, episode = worlds.state, worlds.tables, worlds.episodes[w]
+    state, episode = worlds.state, worlds.episodes[w]
     court = rules.courts[state.worlds[w].scene]
-    x, y, vx, vy = ball_now(state, tables, w, 0)
-    x0, y0, x1, y1 = wall_now(state, tables, w, court.part)
-    tx, ty, _ = target_of(tables.rings, state.worlds[w].scene, court.ring)
+    x, y, vx, vy = ball_now(state, w, 0)
+    x0, y0, x1, y1 = wall_now(state, w, court.part)
+    tx, ty, _ = target_of(state.rings, state.worlds[w].scene, court.ring)
     out[w, 0], out[w, 1] = place_seen(court, x, y)
     out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
     out[w, 4], out[w, 5] = place_seen(court, x0, y0)
@@ -69,9 +68,9 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
 
 
 @function
-def wall_now(state: State, tables: Tables, w: int, part: int) -> tuple[float, float, float, float]:
+def wall_now(state: State, w: int, part: int) -> tuple[float, float, float, float]:
     """Where the ends of the player's wall are now: x, y, x, y [m]."""
-    return core_now(state.motions, tables.parts, tables.turns, state.ends, w, state.worlds[w], part)
+    return core_now(state.motions, state.parts, state.turns, state.ends, w, state.worlds[w], part)
 
 
 @function
@@ -90,8 +89,8 @@ def potential(rules: Rules, worlds: Worlds, w: int) -> float:
         return 0.0
     scene = worlds.state.worlds[w].scene
     court = rules.courts[scene]
-    x, y, _, _ = ball_now(worlds.state, worlds.tables, w, 0)
-    tx, ty, _ = target_of(worlds.tables.rings, scene, court.ring)
+    x, y, _, _ = ball_now(worlds.state, w, 0)
+    tx, ty, _ = target_of(worlds.state.rings, scene, court.ring)
     return -math.sqrt((x - tx) * (x - tx) + (y - ty) * (y - ty)) / court.across
 
 
@@ -108,11 +107,11 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     episode.steps += 1
     while episode.frames < last and code == DONE and state.balls[w, 0].status != layout.CRUSHED:
         hold_action(worlds, actions, w, rules.pace.repeat)
-        drag(rules, worlds, state.ends, worlds.tables.guides, w, frames / rules.pace.fps)
+        drag(rules, worlds, state.ends, worlds.state.guides, w, frames / rules.pace.fps)
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
         until = (episode.frames - worlds.memory[w].born) / rules.pace.fps
-        code = advance(state, worlds.tables, w, until, rules.pace.max_events)
+        code = advance(state, w, until, rules.pace.max_events)
     points = mind_ball(rules, worlds, w, code)
     if episode.end == RUNNING and out_of_time(episode, rules.pace):
         episode.end = TIME_LIMIT
@@ -133,7 +132,7 @@ def drag(rules: Rules, worlds: Worlds, all_ends: Table, guides: Table, w: int, s
     state, held, scene = worlds.state, worlds.held, worlds.state.worlds[w].scene
     court = rules.courts[scene]
     guide = guides[scene, court.part]
-    x0, y0, x1, y1 = wall_now(state, worlds.tables, w, court.part)
+    x0, y0, x1, y1 = wall_now(state, w, court.part)
     vx0 = kept_inside(x0, WALL_SPEED * clipped(held[w, 0]), seconds, guide.x0, guide.x1)
     vy0 = kept_inside(y0, WALL_SPEED * clipped(held[w, 1]), seconds, guide.y0, guide.y1)
     vx1 = kept_inside(x1, WALL_SPEED * clipped(held[w, 2]), seconds, guide.x0, guide.x1)
@@ -145,7 +144,7 @@ def drag(rules: Rules, worlds: Worlds, all_ends: Table, guides: Table, w: int, s
         excess = 0.5 * (1.0 - court.longest / length) / seconds
         vx0, vy0 = vx0 + excess * dx, vy0 + excess * dy
         vx1, vy1 = vx1 - excess * dx, vy1 - excess * dy
-    command_ends(state, worlds.tables, all_ends, w, court.part, vx0, vy0, vx1, vy1)
+    command_ends(state, all_ends, w, court.part, vx0, vy0, vx1, vy1)
 
 
 @function
@@ -193,15 +192,16 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     return False
 
 
-is_game(Rules, begin=begin, play=play, glide=glide, observe=observe, borrow_rules=borrow_rules)
+is_game(Rules, begin=begin, play=play, glide=glide, observe=observe)
 
 
 class WallsGame(Game):
-    """The game of walls for a batch: scene, tables and rules, and what an agent sees and does.
+    """The game of walls for a batch: scene and rules, and what an agent sees and does.
 
     Raises ValueError where the scene cannot be played (`problems_of`), SceneError where it cannot be read.
     """
 
+    owns_scenes = True
     counted = "targets reached"
     counters = ("points_targets", "drained", "timed_out", "crushed", "touches", "is_success")
     memory = MEMORY
@@ -232,12 +232,11 @@ class WallsGame(Game):
         words = (f"Ball {episode.ball + 1} of {self.rules.balls}", f"{math.ceil(left / FPS)} s left")
         return (*words, *super().status(episode, memory))
 
-    def for_worlds(self, worlds: int) -> tuple[Tables, Rules]:
-        """Each world has its own row of every table, for its own target."""
-        courts = np.repeat(self.rules.courts, worlds, axis=0)
-        return repeated(self.tables, worlds), self.rules._replace(courts=courts)
+    def rules_for(self, worlds: int) -> Rules:
+        """Each world has a field of its own, for its own target."""
+        return self.rules._replace(courts=np.repeat(self.rules.courts, worlds, axis=0))
 
-    def written(self, tables: Tables, rules: Rules) -> tuple[Array, ...]:
+    def written(self, state: State, rules: Rules) -> tuple[Array, ...]:
         """Where the target is."""
-        assert tables.rings is not None
-        return (tables.rings,)
+        assert state.rings is not None
+        return (state.rings,)

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.compile.jit import borrow, function
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.placement import cores_at_start, describe, gaps
 from bounce_env.games.episode import FPS
@@ -55,18 +54,6 @@ class Rules(NamedTuple):
     balls: int
     shaping: float  # 1 where the reward is shaped by the distance to the target, otherwise 0
     gamma: float  # of the shaping
-
-
-@function
-def borrow_rules(rules: Rules) -> Rules:
-    """The same rules, borrowed; see `engine.compile.jit.borrow`."""
-    return Rules(
-        borrow(rules.courts),
-        rules.pace,
-        rules.balls,
-        rules.shaping,
-        rules.gamma,
-    )
 
 
 def new_rules(scene: Scene, options: WallsOptions) -> Rules:

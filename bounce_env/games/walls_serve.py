@@ -5,7 +5,7 @@ import math
 from bounce_env.engine.compile.jit import Table, function, routine
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import restart, resume, run
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.games.episode import Worlds
 from bounce_env.games.streams import LAUNCHES, TARGETS, uniform
 from bounce_env.games.walls_rules import (
@@ -25,7 +25,7 @@ def serve(rules: Rules, worlds: Worlds, w: int) -> None:
 
     Whether it does is tried out: the ball is played to its end with the wall at rest.
     """
-    state, tables, episode = worlds.state, worlds.tables, worlds.episodes[w]
+    state, episode = worlds.state, worlds.episodes[w]
     world = state.worlds[w]
     bounces, speed_capped = world.bounces, world.speed_capped
     for attempt in range(TRIES):
@@ -33,7 +33,7 @@ def serve(rules: Rules, worlds: Worlds, w: int) -> None:
         if draw_target(rules, worlds, w, attempt, x, y):
             launch(rules, worlds, w)  # now its flight is planned with the target in its place
             resume(state, w)
-            advance(state, tables, w, BALL_FRAMES / rules.pace.fps, rules.pace.max_events)
+            advance(state, w, BALL_FRAMES / rules.pace.fps, rules.pace.max_events)
             if state.hits[w, rules.courts[world.scene].target] == 0:
                 break
     launch(rules, worlds, w)
@@ -42,16 +42,16 @@ def serve(rules: Rules, worlds: Worlds, w: int) -> None:
 
 
 @routine
-def advance(state: State, tables: Tables, w: int, until: float, max_events: int) -> int:
+def advance(state: State, w: int, until: float, max_events: int) -> int:
     """Process the events of world `w` up to an instant [s] since its launch; see `engine.events.loop.run`."""
-    return run(state, tables, w, until, 0.0, max_events, None)
+    return run(state, w, until, 0.0, max_events, None)
 
 
 @function
 def launch(rules: Rules, worlds: Worlds, w: int) -> tuple[float, float]:
     """Begin anew with the ball in flight: as its seed says or, the first one, `worlds.start`; returns where [m]."""
     state, start, episode = worlds.state, worlds.start, worlds.episodes[w]
-    restart(state, worlds.tables, w)
+    restart(state, w)
     court = rules.courts[state.worlds[w].scene]
     number = 16 * episode.ball
     share = LAUNCH_X[0] + (LAUNCH_X[1] - LAUNCH_X[0]) * uniform(episode.seed, LAUNCHES, number)
@@ -62,20 +62,20 @@ def launch(rules: Rules, worlds: Worlds, w: int) -> tuple[float, float]:
         x, y = start[w, 0], start[w, 1]
     if not math.isnan(start[w, 2]):
         vx, vy = start[w, 2], start[w, 3]
-    place(state, worlds.tables, w, 0, x, y, vx, vy)
+    place(state, w, 0, x, y, vx, vy)
     return x, y
 
 
 @function
 def draw_target(rules: Rules, worlds: Worlds, w: int, attempt: int, x: float, y: float) -> bool:
     """Put the target anywhere on the field; False if that is too near to (x, y) [m], where the ball is launched."""
-    tables, episode, scene = worlds.tables, worlds.episodes[w], worlds.state.worlds[w].scene
+    state, episode, scene = worlds.state, worlds.episodes[w], worlds.state.worlds[w].scene
     court = rules.courts[scene]
-    radius = target_of(tables.rings, scene, court.ring)[2]
+    radius = target_of(state.rings, scene, court.ring)[2]
     number = 256 * episode.ball + 2 * attempt
     tx = court.x + radius + (court.width - 2.0 * radius) * uniform(episode.seed, TARGETS, number)
     ty = court.y + radius + (court.height - 2.0 * radius) * uniform(episode.seed, TARGETS, number + 1)
-    move_target(tables.rings, scene, court.ring, tx, ty)
+    move_target(state.rings, scene, court.ring, tx, ty)
     clear = TARGET_CLEAR * court.across
     return (tx - x) * (tx - x) + (ty - y) * (ty - y) > clear * clear
 

@@ -12,7 +12,7 @@ from bounce_env.engine.compile.jit import borrow, function, kernel
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import DONE, OUT_OF_BUDGET, clear_hits, restart, resume, run
 from bounce_env.engine.memory.records import CRUSHED, HELD, OUT, Array, record
-from bounce_env.engine.memory.state import State, Tables, borrow_state, borrow_tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.readout import ball_now
 
 # How a ball ends.
@@ -72,11 +72,11 @@ def _look(state: State, watch: Watch, w: int, fate: Any, seen: Array, streak: in
 
 
 @function
-def _follow(state: State, tables: Tables, watch: Watch, w: int, start: Array, fate: Any, seen: Array) -> None:
+def _follow(state: State, watch: Watch, w: int, start: Array, fate: Any, seen: Array) -> None:
     """Follow one ball from `start` (x, y, vx, vy) and write down its fate and the elements that it has touched."""
     world, ball = state.worlds[w], state.balls[w, 0]
-    restart(state, tables, w)
-    place(state, tables, w, 0, start[0], start[1], start[2], start[3])
+    restart(state, w)
+    place(state, w, 0, start[0], start[1], start[2], start[3])
     streak, step, in_step = 0, 0, 0
     x, y, since, in_place = start[0], start[1], 0.0, 0  # where it is, from when on and for how many events
     fate.end, fate.run, fate.scored, fate.events = PLAYING, 0, 0, 0
@@ -84,9 +84,9 @@ def _follow(state: State, tables: Tables, watch: Watch, w: int, start: Array, fa
     code = OUT_OF_BUDGET
     while code != DONE and fate.end == PLAYING:
         resume(state, w)
-        code = run(state, tables, w, watch.seconds, 0.0, 1, None)
+        code = run(state, w, watch.seconds, 0.0, 1, None)
         fate.events += 1
-        fate.x, fate.y, fate.vx, fate.vy = ball_now(state, tables, w, 0)
+        fate.x, fate.y, fate.vx, fate.vy = ball_now(state, w, 0)
         fate.time = world.time_hi
         streak = _look(state, watch, w, fate, seen, streak)
         if streak < 0 or _is_inside(watch.boxes, fate.x, fate.y):
@@ -130,19 +130,19 @@ def _end_in_time(watch: Watch, ball: Any, fate: Any) -> int:
 
 @kernel
 def follow_balls(
-    state: State, tables: Tables, watch: Watch, w: int, starts: Array, fates: Array, touched: Array, freely: Array
+    state: State, watch: Watch, w: int, starts: Array, fates: Array, touched: Array, freely: Array
 ) -> None:
     """Follow the balls of `starts` (balls, 4) in world `w`, into `fates` (balls,) FATE.
 
     touched: (elements,) by how many balls; freely: by how many of those that also drained or came within reach. Both
     are added to.
     """
-    state, tables = borrow_state(state), borrow_tables(tables)
+    state = borrow(state)
     starts, fates = borrow(starts), borrow(fates)
     seen = np.zeros(touched.shape[0], np.int8)
     for i in range(starts.shape[0]):
         seen[:] = 0
-        _follow(state, tables, watch, w, starts[i], fates[i], seen)
+        _follow(state, watch, w, starts[i], fates[i], seen)
         free = fates[i].end == DRAINED or fates[i].reached >= 0.0
         for element in range(seen.shape[0]):
             touched[element] += seen[element]

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.memory.state import new_state
 from bounce_env.engine.packing import pack
 from bounce_env.games.episode import FPS
 from bounce_env.games.pace import MAX_EVENTS
@@ -69,14 +68,13 @@ def survey(
     inside = inside_of(scene)
     starts = random_starts(scene, inside, balls, seed)
     watched = with_borders(scene)
-    tables = pack([watched])
-    state = new_state(tables, 1, 1, point=scene.ball.radius == 0.0)
+    state = pack([watched])
     watch = _watch(scene, len(watched.elements), seconds, limit)
     fates = np.zeros(balls, FATE)
     touched, freely = np.zeros((2, len(watched.elements)), np.int64)
     for first in range(0, balls, BALLS_AT_ONCE):
         rows = slice(first, first + BALLS_AT_ONCE)
-        follow_balls(state, tables, watch, 0, starts[rows], fates[rows], touched, freely)
+        follow_balls(state, watch, 0, starts[rows], fates[rows], touched, freely)
         progress(len(fates[rows]))
     own = len(scene.elements)
     return Survey(scene, seconds, limit, inside is not None, starts, fates, touched[:own], freely[:own])

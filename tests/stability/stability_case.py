@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, TypeAlias
@@ -19,6 +19,7 @@ import numpy as np
 
 from bounce_env.engine import world as engine
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, OK, OUT
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.world import World
 from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall
 
@@ -182,7 +183,11 @@ def new_world(scene: Scene, *, balls: int = 1, lean: bool = False) -> World:
 
 def _general(act: Callable[[], Any]) -> Any:
     pack = engine.pack
-    with mock.patch.object(engine, "pack", lambda scenes: pack([*scenes, everything(scenes[0].ball.radius == 0)])):
+
+    def with_everything(scenes: Sequence[Scene], **how: Any) -> State:
+        return pack([*scenes, everything(scenes[0].ball.radius == 0)], **how)
+
+    with mock.patch.object(engine, "pack", with_everything):
         return act()
 
 

@@ -202,17 +202,25 @@ def function_of_feature(absent: Callable[..., Any]) -> Callable[[F], F]:
     return decorate
 
 
-def _borrowed(typing_context: Any, argument: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        array = context.make_array(signature.args[0])(context, builder, value=values[0])
+def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """A value of which no array, however deep in tuples it lies, says who owns its memory."""
+    if isinstance(kind, nb_types.Array):
+        array = context.make_array(kind)(context, builder, value=value)
         array.meminfo = cgutils.get_null_value(array.meminfo.type)
         array.parent = cgutils.get_null_value(array.parent.type)
         return array._getvalue()
+    if isinstance(kind, nb_types.BaseTuple):  # type: ignore[attr-defined]
+        for i, member in enumerate(kind.types):
+            bare = _without_owner(context, builder, member, builder.extract_value(value, i))
+            value = builder.insert_value(value, bare, i)
+    return value
 
-    def pass_on(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return values[0]
 
-    return argument(argument), generate if isinstance(argument, nb_types.Array) else pass_on
+def _borrowed(typing_context: Any, argument: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return _without_owner(context, builder, argument, values[0])
+
+    return argument(argument), generate
 
 
 _borrow = intrinsic(_borrowed)
@@ -228,7 +236,7 @@ def _borrow_compiled(argument: Any) -> Any:
 
 
 borrow = _borrow_interpreted if numba.config.DISABLE_JIT else _borrow_compiled
-"""An array (or None) that is not counted as a reference.
+"""The same array, or (named) tuple of arrays, tuples and numbers, without reference counts.
 
 Numba counts references at every call that an array is passed to, atomically; over a batch that costs more than the
 physics. A kernel borrows its arguments once: its caller holds them for as long as it runs.

@@ -6,14 +6,14 @@ from bounce_env.engine.compile.jit import Feature, Record, Table, function
 from bounce_env.engine.contact.touching import on_capsule
 from bounce_env.engine.memory.lookup import ends_of, side_of_part, turn_of
 from bounce_env.engine.memory.records import NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import fly, magnitude, touch_tolerance
 from bounce_env.engine.motion.parts import core_at
 from bounce_env.engine.tolerances import CORNER, ROOM_TO_MEET, SEARCH_ENDS, ULPS_OF_LENGTH
 
 
 @function
-def snap(state: State, tables: Tables, w: int, k: int) -> None:
+def snap(state: State, w: int, k: int) -> None:
     """Put the ball on the surface of what it hits, along the normal: the rounding of the flight ends here."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
     face, part = -1, -1
@@ -22,25 +22,25 @@ def snap(state: State, tables: Tables, w: int, k: int) -> None:
     elif ball.hit_kind in (ON_FACE, OFF_END):
         face = ball.hit_index
     elif ball.hit_kind == ON_CIRCLE:
-        _snap_to_circle(ball, tables.circles, scene)
+        _snap_to_circle(ball, state.circles, scene)
     elif ball.hit_kind == ON_ARC:
-        _snap_to_arc(ball, tables.arcs, scene)
+        _snap_to_arc(ball, state.arcs, scene)
     elif ball.contact >= 0:
         face = ball.contact
     else:
         part = ball.rides
     if face >= 0:
-        _snap_to_face(ball, tables.faces, face, scene)
+        _snap_to_face(ball, state.faces, face, scene)
     if part >= 0:
-        _snap_to_part(state, tables, state.motions, tables.parts, w, k, part)
+        _snap_to_part(state, state.motions, state.parts, w, k, part)
 
 
 @function
 def end_flight(
-    ball: Record, tables: Tables, scene: int, gx: Feature, gy: Feature, t: float, hi: float, lo: float
+    ball: Record, state: State, scene: int, gx: Feature, gy: Feature, t: float, hi: float, lo: float
 ) -> None:
     """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
-    extent = tables.scenes[scene].extent
+    extent = state.scenes[scene].extent
     ball.slack = touch_tolerance(extent, ball.vx, ball.vy, gx, gy, t)
     way = (abs(ball.vx) + abs(ball.vy) + magnitude(gx, gy) * t) * t
     if way > CORNER * ULPS_OF_LENGTH * extent:
@@ -50,7 +50,7 @@ def end_flight(
         ball.strayed, ball.legs = 0.0, ball.legs + 1
     fly(ball, gx, gy, t, hi, lo)
     if t > 0.0:  # in no time nothing is rounded, and a push may wait to be resolved
-        _keep_along(ball, tables.faces, scene)
+        _keep_along(ball, state.faces, scene)
 
 
 @function
@@ -98,12 +98,12 @@ def _snap_to_arc(ball: Record, arcs: Table, scene: int) -> None:
 
 
 @function
-def _snap_to_part(state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, m: int) -> None:
+def _snap_to_part(state: State, motions: Table, parts: Table, w: int, k: int, m: int) -> None:
     if parts is None or motions is None:
         return
     ball, scene = state.balls[w, k], state.worlds[w].scene
     part, ends = parts[scene, m], ends_of(state.ends, w, m)
-    x, y, ux, uy, back, front = core_at(part, motions[w, m], turn_of(tables.turns, scene, m), ends, ball.hi, ball.lo)
+    x, y, ux, uy, back, front = core_at(part, motions[w, m], turn_of(state.turns, scene, m), ends, ball.hi, ball.lo)
     side = side_of_part(state.part_sides, w, k, m)
     nx, ny, distance, _ = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side, ball.slack)
     # A search may end before a hit: then there is nothing to put the ball on.

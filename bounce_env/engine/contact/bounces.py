@@ -20,7 +20,7 @@ from bounce_env.engine.contact.restitution import (
 from bounce_env.engine.contact.squeeze import is_crushed, note_strike
 from bounce_env.engine.memory.ledger import count_hit, log
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import before, later
 from bounce_env.engine.tolerances import ALIGNED, BOUNCES_AT_ONE_INSTANT, CORNER, OPPOSED, ULPS_OF_SPEED
 
@@ -66,7 +66,7 @@ def fastest_closing(ball: Record, touches: Table, w: int) -> tuple[int, float]:
 
 
 @function
-def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table) -> tuple[int, int, float, float]:
+def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, int, float, float]:
     """Bounce from everything that the ball touches and closes on, fastest first.
 
     Where bounces in a corner are taken to be over, what closes is taken from the velocity. Returns (single, corner, vx,
@@ -79,10 +79,10 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
         i, closing = fastest_closing(ball, state.touches, w)
         if i < 0:
             return -1, -1, ball.vx, ball.vy
-        if ball.touched > 1 and _is_damped(state, tables, w, k, i, closing):
+        if ball.touched > 1 and _is_damped(state, w, k, i, closing):
             break
-        kicked = _bounce_from(state, tables, w, k, i, closing, noise, ledger)
-        if tables.parts is not None and is_crushed(ball, state.touches[w, i], tables.scenes[state.worlds[w].scene]):
+        kicked = _bounce_from(state, w, k, i, closing, noise, ledger)
+        if state.parts is not None and is_crushed(ball, state.touches[w, i], state.scenes[state.worlds[w].scene]):
             ball.status = CRUSHED
             return -1, -1, ball.vx, ball.vy
         if ball.touched == 1:
@@ -95,14 +95,14 @@ def bounce_from_all(state: State, tables: Tables, w: int, k: int, ledger: Table)
 
 
 @function
-def _is_damped(state: State, tables: Tables, w: int, k: int, i: int, closing: float) -> bool:
+def _is_damped(state: State, w: int, k: int, i: int, closing: float) -> bool:
     """Whether a ball in a corner comes so slowly that its bounces there are taken to be over."""
     ball, world = state.balls[w, k], state.worlds[w]
-    head = tables.scenes[world.scene]
-    if tables.gravity is None:
+    head = state.scenes[world.scene]
+    if state.gravity is None:
         return False
     touch = state.touches[w, i]
-    material = tables.elements[world.scene, touch.element]
+    material = state.elements[world.scene, touch.element]
     press = press_of(ball, touch)
     if touch.moves or towards(touch) != 0.0:
         return False
@@ -112,16 +112,14 @@ def _is_damped(state: State, tables: Tables, w: int, k: int, i: int, closing: fl
 
 
 @function
-def _bounce_from(
-    state: State, tables: Tables, w: int, k: int, i: int, closing: float, noise: float, ledger: Table
-) -> bool:
+def _bounce_from(state: State, w: int, k: int, i: int, closing: float, noise: float, ledger: Table) -> bool:
     """Bounce from one touched surface; returns whether it gave a kick. A speed up to `noise` [m/s] left is none."""
     ball, world, touch = state.balls[w, k], state.worlds[w], state.touches[w, i]
-    head, material = tables.scenes[world.scene], tables.elements[world.scene, touch.element]
+    head, material = state.scenes[world.scene], state.elements[world.scene, touch.element]
     rebound, f = material.b * closing, material.f
     if touch.moves and closing <= touch.least:
         rebound, f = max(rebound, touch.least), (1.0 if head.rest_speed > 0.0 and f > 0.0 else f)
-    elif tables.gravity is not None or touch.bend < 0.0:
+    elif state.gravity is not None or touch.bend < 0.0:
         rebound, f = _softened(ball, touch, head, material, closing, rebound, f)
     kicked = material.kick > 0.0 and closing > material.kick_threshold
     if kicked and _is_ready(state.cooling, ball, w, touch.element, material.cooldown):

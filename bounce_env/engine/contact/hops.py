@@ -3,25 +3,25 @@
 from bounce_env.engine.compile.jit import Table, function
 from bounce_env.engine.contact.bounces import count_bounce, fastest_closing
 from bounce_env.engine.contact.restitution import closing_speed, press_of, push_off, rolling_speed, slow_speed, towards
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import BOUNCES_BEFORE_STANDING
 
 
 @function
-def hop_on(state: State, tables: Tables, w: int, k: int, at_once: bool, bounces: int, ledger: Table) -> None:
+def hop_on(state: State, w: int, k: int, at_once: bool, bounces: int, ledger: Table) -> None:
     """Let a ball that flies go on in small hops along what it is pressed on, where that is no wall or the like.
 
     bounces: how many there had been when the ball came here, at once or not.
     """
-    if tables.gravity is not None or tables.arcs is not None:
-        _roll(state, tables, w, k, ledger)
+    if state.gravity is not None or state.arcs is not None:
+        _roll(state, w, k, ledger)
     # Where something closes on it, a ball without room is bounced from a corner at once, for ever.
     if at_once and (state.worlds[w].bounces == bounces or state.balls[w, k].confined > BOUNCES_BEFORE_STANDING):
-        _leave_part(state, tables.parts, w, k, ledger)
+        _leave_part(state, state.parts, w, k, ledger)
 
 
 @function
-def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
+def _roll(state: State, w: int, k: int, ledger: Table) -> None:
     """Let a ball that flies along a curve which it is pressed on leave it with the smallest rebound: one small hop.
 
     What else it touches was not closed on without the hop: where it would be now, the ball leaves along that.
@@ -36,7 +36,7 @@ def _roll(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
     if index < 0:
         return
     touch = state.touches[w, index]
-    extent = tables.scenes[state.worlds[w].scene].extent
+    extent = state.scenes[state.worlds[w].scene].extent
     hop = rolling_speed(ball, touch, best, extent) + closing_speed(ball, touch)
     ball.rolling = touch.element
     vx0, vy0 = ball.vx, ball.vy

@@ -8,7 +8,7 @@ from bounce_env.engine.contact.squeeze import is_caught
 from bounce_env.engine.detect.pairs import weight_of
 from bounce_env.engine.memory.ledger import log
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED, FLYING, HELD, JAMMED, SETTLES
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.tolerances import (
     CORNER,
@@ -75,19 +75,19 @@ def _is_held(ball: Record) -> bool:
 
 
 @function
-def stop(state: State, tables: Tables, w: int, k: int, j: int, nx: float, ny: float, ledger: Table) -> None:
+def stop(state: State, w: int, k: int, j: int, nx: float, ny: float, ledger: Table) -> None:
     """Stop ball `k`, which ball `j` keeps hitting; where a part has it caught, that is to crush it first."""
     ball, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
     if ball.status == CRUSHED:
         return
-    if is_caught(ball, tables.scenes[world.scene]) and ball.squeezes < SQUEEZES:
+    if is_caught(ball, state.scenes[world.scene]) and ball.squeezes < SQUEEZES:
         ball.squeezes = SQUEEZES
         return
     if ball.settling == SETTLES:
         ball.contact, ball.support = FLYING, -1  # that contact does not begin
     vx, vy = ball.vx, ball.vy
     ball.vx, ball.vy, ball.settling = 0.0, 0.0, JAMMED
-    log(ledger, world, ball, k, tables.scenes[world.scene].elements + j, BOUNCE, nx, ny, vx, vy, other.vx, other.vy)
+    log(ledger, world, ball, k, state.scenes[world.scene].elements + j, BOUNCE, nx, ny, vx, vy, other.vx, other.vy)
 
 
 @function

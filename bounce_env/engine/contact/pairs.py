@@ -12,15 +12,13 @@ from bounce_env.engine.detect.schedule import resolve_next
 from bounce_env.engine.memory.ledger import log
 from bounce_env.engine.memory.lookup import pull
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.tolerances import PRESSING, ROLLING, ULPS_OF_SPEED
 
 
 @routine
-def collide(
-    state: State, tables: Tables, pairs: Table, w: int, k: int, j: int, hi: float, lo: float, ledger: Table
-) -> None:
+def collide(state: State, pairs: Table, w: int, k: int, j: int, hi: float, lo: float, ledger: Table) -> None:
     """Let balls `k` > `j` hit each other at the instant (hi, lo); both then bounce from what else they touch.
 
     Equal masses exchange (1 + b^2) / 2 of the speed at which they close; friction does not act. A ball that lies on
@@ -29,11 +27,11 @@ def collide(
     if pairs is None:  # which compiles it away for one ball
         return
     one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
-    head = tables.scenes[world.scene]
-    ax, ay = pull(tables.gravity, one)
-    bx, by = pull(tables.gravity, other)
-    end_flight(one, tables, world.scene, ax, ay, since(hi, lo, one.hi, one.lo), hi, lo)
-    end_flight(other, tables, world.scene, bx, by, since(hi, lo, other.hi, other.lo), hi, lo)
+    head = state.scenes[world.scene]
+    ax, ay = pull(state.gravity, one)
+    bx, by = pull(state.gravity, other)
+    end_flight(one, state, world.scene, ax, ay, since(hi, lo, one.hi, one.lo), hi, lo)
+    end_flight(other, state, world.scene, bx, by, since(hi, lo, other.hi, other.lo), hi, lo)
     dx, dy = one.x - other.x, one.y - other.y
     distance = math.sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
@@ -42,28 +40,28 @@ def collide(
     other.x, other.y = other.x - apart * nx, other.y - apart * ny
     pair = pairs[w, k, j]
     count_meeting(world, pair, one, other, head.extent, hi, lo)
-    _exchange(state, tables, w, k, j, nx, ny, distance, have_no_room(world, pair), ledger)
+    _exchange(state, w, k, j, nx, ny, distance, have_no_room(world, pair), ledger)
     if are_stuck(world, pair, one, other):
-        stop(state, tables, w, k, j, nx, ny, ledger)
-        stop(state, tables, w, j, k, -nx, -ny, ledger)
+        stop(state, w, k, j, nx, ny, ledger)
+        stop(state, w, j, k, -nx, -ny, ledger)
     note_speed(world, one, other)
     for ball in (one, other):
         if ball.status != CRUSHED:
             resolve_next(ball)
-    plan_pairs(state, tables, pairs, w, k)
-    plan_pairs(state, tables, pairs, w, j)
+    plan_pairs(state, pairs, w, k)
+    plan_pairs(state, pairs, w, j)
 
 
 @function
 def _exchange(
-    state: State, tables: Tables, w: int, k: int, j: int, nx: float, ny: float, distance: float, dead: bool,
+    state: State, w: int, k: int, j: int, nx: float, ny: float, distance: float, dead: bool,
     ledger: Table,
 ) -> None:  # fmt: skip
     """The bounce of ball `k` and ball `j`, whose centres are `distance` [m] apart along (nx, ny); dead: without rebound
     but the smallest.
     """
     one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
-    head = tables.scenes[world.scene]
+    head = state.scenes[world.scene]
     closing = -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny)
     noise = max(pair_noise(one, other, one.vx, one.vy, other.vx, other.vy, head), ULPS_OF_SPEED * world.meet_speed)
     least = _least_rebound(one, other, nx, ny, distance, head)

@@ -28,7 +28,7 @@ from bounce_env.engine.memory.records import (
     RIDING,
     SETTLES,
 )
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import (
     BOUNCES_AFTER_STANDING,
     BOUNCES_BEFORE_STANDING,
@@ -42,7 +42,7 @@ from bounce_env.engine.tolerances import (
 
 
 @function
-def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger: Table) -> None:
+def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     """Bounce a ball from all that it touches, decide what it does next, and plan that.
 
     at_once: whether its flight has ended where it began, by something that it was to hit.
@@ -50,14 +50,14 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
     ball = state.balls[w, k]
     if abs(ball.vx) + abs(ball.vy) < STANDING:
         ball.vx, ball.vy = 0.0, 0.0
-    extent = tables.scenes[state.worlds[w].scene].extent
-    if ball.confined > BOUNCES_WITHOUT_ROOM or (tables.gravity is not None and is_slow(ball, extent)):
+    extent = state.scenes[state.worlds[w].scene].extent
+    if ball.confined > BOUNCES_WITHOUT_ROOM or (state.gravity is not None and is_slow(ball, extent)):
         # Between several surfaces the last bounces go to and fro: what lies within their reach counts as touched.
         ball.slack = max(ball.slack, CORNER * ULPS_OF_LENGTH * extent)
     contact, support, settling = ball.contact, ball.support, ball.settling
     ball.settling = 0
-    collect_touches(state, tables, w, k)
-    if tables.parts is not None:
+    collect_touches(state, w, k)
+    if state.parts is not None:
         keep_outside(ball, state.touches, w)
     if settling != JAMMED and _is_stuck(ball, state.touches, w, extent):
         _stop(state, w, k, ledger)
@@ -67,13 +67,13 @@ def resolve(state: State, tables: Tables, w: int, k: int, at_once: bool, ledger:
     else:
         if settling == SETTLES:
             contact, support = FLYING, -1  # that contact had not begun yet
-        duration = _bounce_and_go(state, tables, w, k, contact, support, at_once, ledger)
+        duration = _bounce_and_go(state, w, k, contact, support, at_once, ledger)
         if ball.status == CRUSHED:
             return
     if duration >= 0.0:
         ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
-    plan_rest(state, tables, w, k)
-    plan_pairs(state, tables, state.pairs, w, k)
+    plan_rest(state, w, k)
+    plan_pairs(state, state.pairs, w, k)
 
 
 @function
@@ -117,9 +117,7 @@ def _stand(state: State, w: int, k: int, extent: float, ledger: Table) -> float:
 
 
 @function
-def _bounce_and_go(
-    state: State, tables: Tables, w: int, k: int, contact: int, support: int, at_once: bool, ledger: Table
-) -> float:
+def _bounce_and_go(state: State, w: int, k: int, contact: int, support: int, at_once: bool, ledger: Table) -> float:
     """Bounce a ball from all that it touches, let it fly, slide or rest, and search what stands in its way.
 
     contact, support: those that it came with.
@@ -128,29 +126,29 @@ def _bounce_and_go(
     ball, bounces = state.balls[w, k], state.worlds[w].bounces
     if ball.vague > 0.0:
         take_vague(ball, state.touches, w)
-    if at_once and tables.gravity is not None:
-        take_soft(ball, state.touches, w, tables.scenes[state.worlds[w].scene].extent)
-    single, corner, vx0, vy0 = bounce_from_all(state, tables, w, k, ledger)
+    if at_once and state.gravity is not None:
+        take_soft(ball, state.touches, w, state.scenes[state.worlds[w].scene].extent)
+    single, corner, vx0, vy0 = bounce_from_all(state, w, k, ledger)
     if ball.status == CRUSHED:
         return -1.0
     _let_go(ball)
-    if tables.gravity is not None:
+    if state.gravity is not None:
         # Told at once of a hit of something that it does not close on, a ball that rides on a part, or slides into one,
         # would be so for ever: it hops off.
         slides_in = contact >= 0 and ball.next_kind == NEXT_PART
         again = (contact == RIDING or slides_in) and at_once and state.worlds[w].bounces == bounces
-        i = _change_contact(state, tables, w, k, contact, support, again, vx0, vy0, ledger)
+        i = _change_contact(state, w, k, contact, support, again, vx0, vy0, ledger)
         corner = corner if i < 0 else -1
     if corner >= 0:
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
     if ball.contact == FLYING:
-        hop_on(state, tables, w, k, at_once, bounces, ledger)
-    face_crossings(state, tables, w, k)
+        hop_on(state, w, k, at_once, bounces, ledger)
+    face_crossings(state, w, k)
     vx, vy, duration = ball.vx, ball.vy, -1.0
-    if tables.gravity is not None and single >= 0 and ball.contact == FLYING:
-        duration = _settle(state, tables, w, k, single)
+    if state.gravity is not None and single >= 0 and ball.contact == FLYING:
+        duration = _settle(state, w, k, single)
     for _ in range(2):
-        plan_standing(state, tables, w, k)
+        plan_standing(state, w, k)
         if duration < 0.0 or ball.hit_after > duration:
             break
         # Something comes before the bounces are over: they go on one by one.
@@ -161,7 +159,7 @@ def _bounce_and_go(
 
 @function
 def _change_contact(
-    state: State, tables: Tables, w: int, k: int, contact: int, support: int, off: bool, vx: float, vy: float,
+    state: State, w: int, k: int, contact: int, support: int, off: bool, vx: float, vy: float,
     ledger: Table,
 ) -> int:  # fmt: skip
     """Find the ball's contact, if it is not to fly `off`; log the end of the one that it had, the beginning of another.
@@ -169,7 +167,7 @@ def _change_contact(
     (vx, vy): its velocity [m/s] before. Returns which touched surface a new contact is with, -1 if there is none.
     """
     ball = state.balls[w, k]
-    i = -1 if off else find_contact(state, tables, w, k)
+    i = -1 if off else find_contact(state, w, k)
     stopped = ball.contact == HELD and (vx != ball.vx or vy != ball.vy)  # held again, after a push
     if ball.contact == contact and ball.support == support and not stopped:
         return -1
@@ -192,15 +190,15 @@ def _let_go(ball: Record) -> None:
 
 
 @function
-def _settle(state: State, tables: Tables, w: int, k: int, single: int) -> float:
+def _settle(state: State, w: int, k: int, single: int) -> float:
     """Sum the bounces still to come on a wall, if they rise above no tolerance; returns how long they take [s], or -1.
 
     With hops of durations tau, b tau, b^2 tau ... they end after tau / (1 - b); meanwhile the ball is on the wall. With
     f = 1 it slides as ever. With f < 1 it comes to stand; until then it is shown in uniform motion to where.
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head, touch = tables.scenes[scene], state.touches[w, single]
-    material = tables.elements[scene, touch.element]
+    head, touch = state.scenes[scene], state.touches[w, single]
+    material = state.elements[scene, touch.element]
     press, rebound, b, f = press_of(ball, touch), -closing_speed(ball, touch), material.b, material.f
     if touch.bend != 0.0 or touch.moves or head.rest_speed > 0.0 or not 0.0 < b < 1.0:
         return -1.0

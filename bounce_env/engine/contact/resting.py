@@ -9,7 +9,7 @@ import math
 from bounce_env.engine.compile.jit import Record, Table, function
 from bounce_env.engine.contact.restitution import along_speed, closing_speed, press_of, slow_speed, stands
 from bounce_env.engine.memory.records import HELD, RIDING
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import ALIGNED, BALANCE, CORNER, PRESSING, SWING, ULPS_OF_LENGTH, ULPS_OF_SPEED
 
 
@@ -21,20 +21,20 @@ def is_slow(ball: Record, extent: float) -> bool:
 
 
 @function
-def find_contact(state: State, tables: Tables, w: int, k: int) -> int:
+def find_contact(state: State, w: int, k: int) -> int:
     """Hold the ball, or let it slide on a wall, where it is pressed on what it touches; -1 where it flies.
 
     Returns which touched surface supports it.
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
+    head = state.scenes[scene]
     for i in range(ball.touched):
         touch = state.touches[w, i]
         if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or press_of(ball, touch) == 0.0:
             continue
         if not _lets_hold(ball, state.touches, w, i):
             continue
-        f = tables.elements[scene, touch.element].f
+        f = state.elements[scene, touch.element].f
         if f == 0.0 or (f < 1.0 and head.rest_speed == 0.0):
             return _hold(ball, touch, i)
         if _swings_out(ball, touch, head.rest_speed):

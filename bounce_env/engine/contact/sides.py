@@ -10,7 +10,7 @@ from bounce_env.engine.detect.surfaces import wall_normal
 from bounce_env.engine.impact.line import leaves_end
 from bounce_env.engine.memory.lookup import is_dragged, is_off
 from bounce_env.engine.memory.records import CLOSED, NEXT_PART, OFF_END
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.dragged_wall import height_over
 from bounce_env.engine.motion.flight import bending, moved, sped
 from bounce_env.engine.motion.instant import since
@@ -36,26 +36,24 @@ def _side_after(
 
 
 @function
-def arrive(
-    state: State, tables: Tables, w: int, k: int, x0: float, y0: float, vx0: float, vy0: float, t: float
-) -> None:
+def arrive(state: State, w: int, k: int, x0: float, y0: float, vx0: float, vy0: float, t: float) -> None:
     """Bring a ball's sides of walls and arcs up to date before it bounces.
 
     (x0, y0) [m] and (vx0, vy0) [m/s] are where and how its flight began, `t` seconds ago.
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
-    left = _left_face(ball, tables.faces, head.faces, state.face_sides, state.disabled, w, scene)
-    nx, ny = wall_normal(state, tables.faces, w, k, left)
-    _arrive_at_lines(ball, tables.faces, head.faces, state.face_sides, w, k, scene, x0, y0, vx0, vy0, t)
-    _arrive_at_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, x0, y0, vx0, vy0, t)
+    head = state.scenes[scene]
+    left = _left_face(ball, state.faces, head.faces, state.face_sides, state.disabled, w, scene)
+    nx, ny = wall_normal(state, state.faces, w, k, left)
+    _arrive_at_lines(ball, state.faces, head.faces, state.face_sides, w, k, scene, x0, y0, vx0, vy0, t)
+    _arrive_at_arcs(ball, state.arcs, head.arcs, state.arc_sides, w, k, scene, x0, y0, vx0, vy0, t)
     _arrive_at_parts(
-        ball, tables.parts, head.parts, state.motions, state.ends, state.part_sides, w, k, scene, x0, y0, vx0, vy0, t
+        ball, state.parts, head.parts, state.motions, state.ends, state.part_sides, w, k, scene, x0, y0, vx0, vy0, t
     )
     if left >= 0:
-        turn = _turn_about_end(ball, tables.faces, left, scene, nx, ny)
-        _turn_to_faces(ball, tables.faces, head.faces, state.face_sides, w, k, scene, left, turn)
-        _turn_to_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, turn)
+        turn = _turn_about_end(ball, state.faces, left, scene, nx, ny)
+        _turn_to_faces(ball, state.faces, head.faces, state.face_sides, w, k, scene, left, turn)
+        _turn_to_arcs(ball, state.arcs, head.arcs, state.arc_sides, w, k, scene, turn)
 
 
 @function
@@ -184,13 +182,13 @@ def _turn_to_arcs(ball: Record, arcs: Table, count: int, sides: Table, w: int, k
 
 
 @function
-def face_crossings(state: State, tables: Tables, w: int, k: int) -> None:
+def face_crossings(state: State, w: int, k: int) -> None:
     """Bring the ball's sides of sensors and fields up to date where its place tells; a crossing itself flips them."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
-    _face_lines(ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene)
-    _face_lines(ball, tables.edges, head.fields, state.edge_sides, w, k, scene)
-    _face_rings(ball, tables.rings, head.rings, state.ring_sides, w, k, scene)
+    head = state.scenes[scene]
+    _face_lines(ball, state.sensors, head.sensors, state.sensor_sides, w, k, scene)
+    _face_lines(ball, state.edges, head.fields, state.edge_sides, w, k, scene)
+    _face_rings(ball, state.rings, head.rings, state.ring_sides, w, k, scene)
 
 
 @function

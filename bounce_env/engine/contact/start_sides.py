@@ -4,7 +4,7 @@ import math
 
 from bounce_env.engine.compile.jit import Record, Table, function
 from bounce_env.engine.memory.lookup import is_dragged
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.dragged_wall import line_at
 from bounce_env.engine.motion.fields import gravity_of
 from bounce_env.engine.motion.instant import since
@@ -12,17 +12,17 @@ from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 
 
 @function
-def take_sides(state: State, tables: Tables, w: int, k: int) -> None:
+def take_sides(state: State, w: int, k: int) -> None:
     """The ball's sides at its start: on a line itself the one it moves to, at rest the one gravity presses it from."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
-    gx, gy = gravity_of(tables.gravity, scene)
-    _side_with_lines(ball, tables.faces, head.faces, state.face_sides, w, k, scene, gx, gy)
-    _side_with_lines(ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene, gx, gy)
-    _side_with_lines(ball, tables.edges, head.fields, state.edge_sides, w, k, scene, gx, gy)
-    _side_with_arcs(ball, tables.arcs, head.arcs, state.arc_sides, w, k, scene, gx, gy)
-    _side_with_parts(ball, tables.parts, head.parts, state.motions, state.ends, state.part_sides, w, k, scene, gx, gy)
-    _side_with_rings(ball, tables.rings, head.rings, state.ring_sides, w, k, scene, gx, gy)
+    head = state.scenes[scene]
+    gx, gy = gravity_of(state.gravity, scene)
+    _side_with_lines(ball, state.faces, head.faces, state.face_sides, w, k, scene, gx, gy)
+    _side_with_lines(ball, state.sensors, head.sensors, state.sensor_sides, w, k, scene, gx, gy)
+    _side_with_lines(ball, state.edges, head.fields, state.edge_sides, w, k, scene, gx, gy)
+    _side_with_arcs(ball, state.arcs, head.arcs, state.arc_sides, w, k, scene, gx, gy)
+    _side_with_parts(ball, state.parts, head.parts, state.motions, state.ends, state.part_sides, w, k, scene, gx, gy)
+    _side_with_rings(ball, state.rings, head.rings, state.ring_sides, w, k, scene, gx, gy)
 
 
 @function

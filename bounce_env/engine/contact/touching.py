@@ -10,7 +10,7 @@ from bounce_env.engine.contact.restitution import stands
 from bounce_env.engine.impact.arc import in_span
 from bounce_env.engine.impact.line import beside
 from bounce_env.engine.memory.lookup import ends_of, is_gate, is_off, side_of_part, side_on, turn_of
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import core_at, spin_of, surface_velocity
 from bounce_env.engine.tolerances import ROLLING
 
@@ -37,21 +37,21 @@ def on_capsule(
 
 
 @function
-def collect_touches(state: State, tables: Tables, w: int, k: int) -> None:
+def collect_touches(state: State, w: int, k: int) -> None:
     """List in `state.touches[w]` all surfaces that ball `k` touches within its slack, `ball.touched` of them."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
+    head = state.scenes[scene]
     ball.touched = 0
     _touch_faces(
-        ball, tables.faces, tables.gates, head.faces, state.face_sides, state.touches, state.disabled, w, k, scene
+        ball, state.faces, state.gates, head.faces, state.face_sides, state.touches, state.disabled, w, k, scene
     )
-    _touch_circles(ball, tables.circles, head.circles, state.touches, state.disabled, w, scene)
-    _touch_arcs(ball, tables.arcs, head.arcs, state.arc_sides, state.touches, state.disabled, w, k, scene)
+    _touch_circles(ball, state.circles, head.circles, state.touches, state.disabled, w, scene)
+    _touch_arcs(ball, state.arcs, head.arcs, state.arc_sides, state.touches, state.disabled, w, k, scene)
     _touch_parts(
         ball,
-        tables.parts,
+        state.parts,
         state.motions,
-        tables.turns,
+        state.turns,
         state.ends,
         state.part_sides,
         state.zones,

@@ -10,7 +10,7 @@ from bounce_env.engine.compile.jit import Feature, Record, Table, function, func
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.memory.lookup import pull
 from bounce_env.engine.memory.records import OUT
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import magnitude, moved, sped, touch_tolerance
 from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.tolerances import (
@@ -42,18 +42,18 @@ def _drawn_off(x: float, y: float, gx: Feature, gy: Feature, reach: float) -> fl
 
 
 @routine
-def plan_pairs(state: State, tables: Tables, pairs: Table, w: int, k: int) -> None:
+def plan_pairs(state: State, pairs: Table, w: int, k: int) -> None:
     """Set when ball `k` hits each other ball, as long as both keep to their present flights."""
     if pairs is None:
         return
     for j in range(state.balls.shape[1]):
         if j != k:
             pair = pairs[w, max(j, k), min(j, k)]
-            pair.hi, pair.lo = _meeting(state, tables, w, max(j, k), min(j, k))
+            pair.hi, pair.lo = _meeting(state, w, max(j, k), min(j, k))
 
 
 @function
-def _meeting(state: State, tables: Tables, w: int, k: int, j: int) -> tuple[float, float]:
+def _meeting(state: State, w: int, k: int, j: int) -> tuple[float, float]:
     one, other = state.balls[w, k], state.balls[w, j]
     if OUT in (one.status, other.status):
         return math.inf, 0.0
@@ -61,11 +61,11 @@ def _meeting(state: State, tables: Tables, w: int, k: int, j: int) -> tuple[floa
     if before(hi, lo, other.hi, other.lo):
         hi, lo = other.hi, other.lo
     s, t = since(hi, lo, one.hi, one.lo), since(hi, lo, other.hi, other.lo)
-    ax, ay = pull(tables.gravity, one)
-    bx, by = pull(tables.gravity, other)
+    ax, ay = pull(state.gravity, one)
+    bx, by = pull(state.gravity, other)
     gx, gy = difference(ax, ay, bx, by)
     horizon = min(one.end_after - s, other.end_after - t)
-    head = tables.scenes[state.worlds[w].scene]
+    head = state.scenes[state.worlds[w].scene]
     slack = touch_tolerance(head.extent, one.vx, one.vy, ax, ay, s)
     slack = max(slack, touch_tolerance(head.extent, other.vx, other.vy, bx, by, t))
     x = moved(one.x, one.vx, ax, s) - moved(other.x, other.vx, bx, t)

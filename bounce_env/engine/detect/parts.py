@@ -9,7 +9,7 @@ from bounce_env.engine.impact.line import face_time
 from bounce_env.engine.impact.rotating_capsule import turning_time
 from bounce_env.engine.impact.stretching_wall import stretching_time
 from bounce_env.engine.memory.lookup import ends_of, is_dragged, is_off, side_of_part, turn_of
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import dot, moved, sped, swept, touch_tolerance
 from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.motion.parts import core_at, stop_instant, surface_velocity
@@ -36,7 +36,7 @@ def strip_change(height: float, rate: float, pull: Feature, border: float, insid
 
 @routine
 def plan_zones(
-    ball: Record, state: State, tables: Tables, zones: Table, parts: Table, w: int, k: int, scene: int,
+    ball: Record, state: State, zones: Table, parts: Table, w: int, k: int, scene: int,
     gx: Feature, gy: Feature, now: float,
 ) -> None:  # fmt: skip
     """Bring the ball's zones up to `now` seconds into its flight, and set when the next of them changes.
@@ -48,8 +48,8 @@ def plan_zones(
     ball.zone_after = math.inf
     if parts is None or zones is None:
         return
-    for m in range(tables.scenes[scene].parts):
-        part, zone, turn = parts[scene, m], zones[w, k, m], turn_of(tables.turns, scene, m)
+    for m in range(state.scenes[scene].parts):
+        part, zone, turn = parts[scene, m], zones[w, k, m], turn_of(state.turns, scene, m)
         if is_dragged(ends_of(state.ends, w, m), part):
             zone.inside, zone.after = 1, math.inf
             continue
@@ -163,18 +163,18 @@ def _is_near(
 
 @function
 def plan_meetings(
-    ball: Record, state: State, tables: Tables, motions: Table, parts: Table, zones: Table, w: int, k: int, scene: int,
+    ball: Record, state: State, motions: Table, parts: Table, zones: Table, w: int, k: int, scene: int,
     gx: Feature, gy: Feature,
 ) -> None:  # fmt: skip
     """Search the parts in whose zone the ball is, and set which one it hits first, and when."""
     ball.part_hi, ball.part_lo, ball.part_index = math.inf, 0.0, -1
     if parts is None or motions is None or zones is None:
         return
-    head = tables.scenes[scene]
+    head = state.scenes[scene]
     for m in range(head.parts):
         if m == ball.rides or not zones[w, k, m].inside or is_off(state.disabled, w, parts[scene, m].element):
             continue
-        turn, ends = turn_of(tables.turns, scene, m), ends_of(state.ends, w, m)
+        turn, ends = turn_of(state.turns, scene, m), ends_of(state.ends, w, m)
         side, leaves_after = side_of_part(state.part_sides, w, k, m), zones[w, k, m].after
         hi, lo = meet_part(ball, motions[w, m], parts[scene, m], turn, ends, side, leaves_after, head.extent, gx, gy)
         if before(hi, lo, ball.part_hi, ball.part_lo):

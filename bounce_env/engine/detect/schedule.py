@@ -25,45 +25,43 @@ from bounce_env.engine.memory.records import (
     RESOLVE,
     RIDING,
 )
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import time_in_scene
 from bounce_env.engine.motion.instant import before, later
 
 
 @routine
-def plan_parts(state: State, tables: Tables, w: int, k: int) -> None:
+def plan_parts(state: State, w: int, k: int) -> None:
     """Search the parts in whose zone a ball is, and set its next event."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    gx, gy = pull(tables.gravity, ball)
-    plan_meetings(ball, state, tables, state.motions, tables.parts, state.zones, w, k, scene, gx, gy)
+    gx, gy = pull(state.gravity, ball)
+    plan_meetings(ball, state, state.motions, state.parts, state.zones, w, k, scene, gx, gy)
     schedule(ball)
 
 
 @function
-def plan_crossing(state: State, tables: Tables, w: int, k: int, after: float, kind: int, index: int) -> None:
+def plan_crossing(state: State, w: int, k: int, after: float, kind: int, index: int) -> None:
     """Search the next crossing after (after, kind, index) in the present flight, and set the ball's next event."""
     ball = state.balls[w, k]
-    gx, gy = pull(tables.gravity, ball)
-    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(
-        state, tables, w, k, gx, gy, after, kind, index
-    )
+    gx, gy = pull(state.gravity, ball)
+    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(state, w, k, gx, gy, after, kind, index)
     schedule(ball)
 
 
 @function
-def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
+def plan_standing(state: State, w: int, k: int) -> None:
     """Search everything that stands: what ends the flight that begins now, and when."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
-    gx, gy = pull(tables.gravity, ball)
-    nx, ny = wall_normal(state, tables.faces, w, k, ball.contact)
+    head = state.scenes[scene]
+    gx, gy = pull(state.gravity, ball)
+    nx, ny = wall_normal(state, state.faces, w, k, ball.contact)
     if ball.contact == RIDING:
         nx, ny = ball.nx, ball.ny
     horizon = time_in_scene(head.extent, ball.x, ball.y, ball.vx, ball.vy, gx, gy)
     after, face = first_face(
         ball,
-        tables.faces,
-        tables.gates,
+        state.faces,
+        state.gates,
         head.faces,
         state.face_sides,
         state.disabled,
@@ -77,20 +75,20 @@ def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
         horizon,
     )
     ball.hit_kind, ball.hit_index = ON_FACE, face
-    after, circle = first_circle(ball, tables.circles, head.circles, state.disabled, w, scene, gx, gy, nx, ny, after)
+    after, circle = first_circle(ball, state.circles, head.circles, state.disabled, w, scene, gx, gy, nx, ny, after)
     if circle >= 0:
         ball.hit_kind, ball.hit_index = ON_CIRCLE, circle
     after, arc = first_arc(
-        ball, tables.arcs, head.arcs, state.arc_sides, state.disabled, w, k, scene, gx, gy, nx, ny, after
+        ball, state.arcs, head.arcs, state.arc_sides, state.disabled, w, k, scene, gx, gy, nx, ny, after
     )
     if arc >= 0:
         ball.hit_kind, ball.hit_index = ON_ARC, arc
-    after, end = first_end(ball, tables.faces, head.faces, state.face_sides, state.disabled, w, scene, gx, gy, after)
+    after, end = first_end(ball, state.faces, head.faces, state.face_sides, state.disabled, w, scene, gx, gy, after)
     if end >= 0:
         ball.hit_kind, ball.hit_index = OFF_END, end
     met = face >= 0 or circle >= 0 or arc >= 0 or end >= 0
     if ball.contact == RIDING:
-        off = way_off_part(ball, state.motions, tables.parts, tables.turns, state.ends, w, scene, gx, gy)
+        off = way_off_part(ball, state.motions, state.parts, state.turns, state.ends, w, scene, gx, gy)
         if off < after:
             after, met = off, True
             ball.hit_kind, ball.hit_index = OFF_PART, ball.rides
@@ -99,13 +97,13 @@ def plan_standing(state: State, tables: Tables, w: int, k: int) -> None:
 
 
 @function
-def plan_rest(state: State, tables: Tables, w: int, k: int) -> None:
+def plan_rest(state: State, w: int, k: int) -> None:
     """Search what does not end the flight, or may move: sensors, zones, parts; and set the ball's next event."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    gx, gy = pull(tables.gravity, ball)
-    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(state, tables, w, k, gx, gy, -1.0, -1, -1)
-    plan_zones(ball, state, tables, state.zones, tables.parts, w, k, scene, gx, gy, 0.0)
-    plan_parts(state, tables, w, k)
+    gx, gy = pull(state.gravity, ball)
+    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(state, w, k, gx, gy, -1.0, -1, -1)
+    plan_zones(ball, state, state.zones, state.parts, w, k, scene, gx, gy, 0.0)
+    plan_parts(state, w, k)
 
 
 @function

@@ -6,7 +6,7 @@ from bounce_env.engine.compile.jit import Feature, Record, Table, function
 from bounce_env.engine.impact.arc import entry_time
 from bounce_env.engine.impact.line import facing_time, line_time
 from bounce_env.engine.memory.records import FIELD_EDGE, LINE, RING_ENTRY
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import ULP
 
 Crossing = tuple[float, int, int]  # duration [s] from the flight's start, kind and row of what is crossed
@@ -14,18 +14,18 @@ Crossing = tuple[float, int, int]  # duration [s] from the flight's start, kind 
 
 @function
 def next_crossing(
-    state: State, tables: Tables, w: int, k: int, gx: Feature, gy: Feature, after: float, kind: int, index: int
+    state: State, w: int, k: int, gx: Feature, gy: Feature, after: float, kind: int, index: int
 ) -> Crossing:
     """Earliest crossing later than the crossing (after, kind, index), up to the flight's end; inf if none.
 
     Crossings at one instant come in the order of kinds (lines, circles, borders of fields), and in that of elements.
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = tables.scenes[scene]
+    head = state.scenes[scene]
     best = (math.inf, LINE, -1)
-    best = _lines(best, ball, tables.sensors, head.sensors, state.sensor_sides, w, k, scene, gx, gy, after, kind, index)
-    best = _rings(best, ball, tables.rings, head.rings, state.ring_sides, w, k, scene, gx, gy, after, kind, index)
-    return _edges(best, ball, tables.edges, head.fields, state.edge_sides, w, k, scene, gx, gy, after, kind, index)
+    best = _lines(best, ball, state.sensors, head.sensors, state.sensor_sides, w, k, scene, gx, gy, after, kind, index)
+    best = _rings(best, ball, state.rings, head.rings, state.ring_sides, w, k, scene, gx, gy, after, kind, index)
+    return _edges(best, ball, state.edges, head.fields, state.edge_sides, w, k, scene, gx, gy, after, kind, index)
 
 
 @function

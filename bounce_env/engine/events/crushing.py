@@ -12,13 +12,13 @@ from bounce_env.engine.events.part_stops import block, end_rides, hold_still, re
 from bounce_env.engine.memory.ledger import log
 from bounce_env.engine.memory.lookup import ends_of, pull, side_of_part, turn_of
 from bounce_env.engine.memory.records import CRUSH, CRUSHED, HELD, OK
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import core_at, kept_offset, surface_velocity
 from bounce_env.engine.tolerances import CLEARANCE, ULPS_OF_SPEED
 
 
 @routine
-def crush(state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, ledger: Table) -> None:
+def crush(state: State, motions: Table, parts: Table, w: int, k: int, ledger: Table) -> None:
     """Stop the part that crushes ball `k`, and hold the ball until a command opens the gap.
 
     A part that shuttles turns back instead, where it has room for it.
@@ -38,20 +38,20 @@ def crush(state: State, tables: Tables, motions: Table, parts: Table, w: int, k:
         ball.nx, ball.ny = ball.snx, ball.sny
         log(ledger, world, ball, k, part.element, CRUSH, ball.nx, ball.ny, vx, vy, ball.sux, ball.suy)
         ball.hit_after, ball.end_after, ball.sensor_after = math.inf, math.inf, math.inf
-        gx, gy = pull(tables.gravity, ball)
-        plan_zones(ball, state, tables, state.zones, tables.parts, w, k, world.scene, gx, gy, 0.0)
-        plan_parts(state, tables, w, k)
-    plan_pairs(state, tables, state.pairs, w, k)
-    block(state, tables, motions, parts, w, m, ledger)
+        gx, gy = pull(state.gravity, ball)
+        plan_zones(ball, state, state.zones, state.parts, w, k, world.scene, gx, gy, 0.0)
+        plan_parts(state, w, k)
+    plan_pairs(state, state.pairs, w, k)
+    block(state, motions, parts, w, m, ledger)
 
 
 @routine
-def mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int) -> None:
+def mind_crushed(state: State, motions: Table, parts: Table, w: int, m: int) -> None:
     """Part `m` has set off: it may not close on a crushed ball, and frees those that it moves away from."""
     if motions is None or parts is None:
         return
     world = state.worlds[w]
-    motion, part, turn = motions[w, m], parts[world.scene, m], turn_of(tables.turns, world.scene, m)
+    motion, part, turn = motions[w, m], parts[world.scene, m], turn_of(state.turns, world.scene, m)
     ends = ends_of(state.ends, w, m)
     for k in range(state.balls.shape[1]):
         ball = state.balls[w, k]
@@ -59,18 +59,16 @@ def mind_crushed(state: State, tables: Tables, motions: Table, parts: Table, w: 
             continue
         side = side_of_part(state.part_sides, w, k, m)
         gap, closing = _approach(ball, motion, part, turn, ends, side, world.time_hi, world.time_lo)
-        if gap > 2.0 * CLEARANCE * tables.scenes[world.scene].extent:
+        if gap > 2.0 * CLEARANCE * state.scenes[world.scene].extent:
             continue
         if closing > 0.0:
             hold_still(motion, ends, part)
         elif closing < 0.0:
-            _free(state, tables, motions, parts, w, k, m)
+            _free(state, motions, parts, w, k, m)
 
 
 @routine
-def meet_crushed(
-    state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, m: int, ledger: Table
-) -> None:
+def meet_crushed(state: State, motions: Table, parts: Table, w: int, k: int, m: int, ledger: Table) -> None:
     """Part `m` comes to ball `k`, which is crushed: it may not close on it, but slide past it.
 
     What is told at once to have come to it again is about to close on it.
@@ -78,14 +76,14 @@ def meet_crushed(
     if motions is None or parts is None:
         return
     ball, world = state.balls[w, k], state.worlds[w]
-    turn, ends = turn_of(tables.turns, world.scene, m), ends_of(state.ends, w, m)
+    turn, ends = turn_of(state.turns, world.scene, m), ends_of(state.ends, w, m)
     side = side_of_part(state.part_sides, w, k, m)
     _, closing = _approach(ball, motions[w, m], parts[world.scene, m], turn, ends, side, world.time_hi, world.time_lo)
     if closing > 0.0 or (ball.hi == world.time_hi and ball.lo == world.time_lo):
-        block(state, tables, motions, parts, w, m, ledger)
+        block(state, motions, parts, w, m, ledger)
     else:
         ball.hi, ball.lo = world.time_hi, world.time_lo
-        plan_parts(state, tables, w, k)
+        plan_parts(state, w, k)
 
 
 @function
@@ -101,23 +99,23 @@ def _approach(
 
 
 @function
-def _free(state: State, tables: Tables, motions: Table, parts: Table, w: int, k: int, m: int) -> None:
+def _free(state: State, motions: Table, parts: Table, w: int, k: int, m: int) -> None:
     """Let a crushed ball go on, and what crushed it, unless that is part `m`, which has been told where to."""
     ball = state.balls[w, k]
     crusher = ball.struck
     ball.status, ball.struck, ball.squeezes = OK, -1, 0
-    disturb(state, tables, w, k, 1.0, 0.0, 0.0)
+    disturb(state, w, k, 1.0, 0.0, 0.0)
     if crusher != m and crusher >= 0:
-        end_rides(state, tables, w, crusher)
-        resume_part(state, tables, motions, parts, w, crusher)
-        replan_part(state, tables, state.zones, w, crusher)
+        end_rides(state, w, crusher)
+        resume_part(state, motions, parts, w, crusher)
+        replan_part(state, state.zones, w, crusher)
 
 
 @function
-def free_all(state: State, tables: Tables, motions: Table, parts: Table, w: int) -> None:
+def free_all(state: State, motions: Table, parts: Table, w: int) -> None:
     """Let all crushed balls go on: something else than a command may have opened their gaps."""
     if motions is None or parts is None:
         return
     for k in range(state.balls.shape[1]):
         if state.balls[w, k].status == CRUSHED:
-            _free(state, tables, motions, parts, w, k, -1)
+            _free(state, motions, parts, w, k, -1)

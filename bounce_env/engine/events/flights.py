@@ -8,17 +8,17 @@ from bounce_env.engine.detect.pairs import plan_pairs
 from bounce_env.engine.detect.schedule import resolve_next
 from bounce_env.engine.memory.lookup import pull
 from bounce_env.engine.memory.records import CRUSHED, FLYING, OK, OUT, RESOLVE
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.fields import accelerate
 from bounce_env.engine.motion.flight import touch_tolerance
 from bounce_env.engine.motion.instant import since
 
 
 @routine
-def place(state: State, tables: Tables, w: int, k: int, x: float, y: float, vx: float, vy: float) -> None:
+def place(state: State, w: int, k: int, x: float, y: float, vx: float, vy: float) -> None:
     """Put ball `k` into flight at (x, y) [m] with velocity (vx, vy) [m/s] at the world's present time."""
     ball, world = state.balls[w, k], state.worlds[w]
-    head = tables.scenes[world.scene]
+    head = state.scenes[world.scene]
     ball.x, ball.y, ball.vx, ball.vy = x, y, vx, vy
     ball.hi, ball.lo = world.time_hi, world.time_lo
     ball.status = OK
@@ -26,12 +26,12 @@ def place(state: State, tables: Tables, w: int, k: int, x: float, y: float, vx: 
     ball.struck, ball.squeezes, ball.vague = -1, 0, 0.0
     ball.confined, ball.strayed, ball.legs = 0, 0.0, 0
     ball.slack = touch_tolerance(head.extent, 0.0, 0.0, None, None, 0.0)
-    take_sides(state, tables, w, k)
-    accelerate(state, tables, w, k)
+    take_sides(state, w, k)
+    accelerate(state, w, k)
     ball.ax, ball.ay = ball.gx, ball.gy
     _enter_zones(state.zones, w, k)
     resolve_next(ball)
-    plan_pairs(state, tables, state.pairs, w, k)
+    plan_pairs(state, state.pairs, w, k)
 
 
 @function
@@ -43,7 +43,7 @@ def _enter_zones(zones: Table, w: int, k: int) -> None:
 
 
 @routine
-def disturb(state: State, tables: Tables, w: int, k: int, drag: float, dvx: float, dvy: float) -> None:
+def disturb(state: State, w: int, k: int, drag: float, dvx: float, dvy: float) -> None:
     """Let a new flight of ball `k` begin now, at `drag` times its velocity plus (dvx, dvy) [m/s].
 
     It first bounces from what it touches, or comes into contact with it, or goes on as it was.
@@ -51,19 +51,19 @@ def disturb(state: State, tables: Tables, w: int, k: int, drag: float, dvx: floa
     ball, world = state.balls[w, k], state.worlds[w]
     if ball.status in (OUT, CRUSHED):
         return
-    gx, gy = pull(tables.gravity, ball)
+    gx, gy = pull(state.gravity, ball)
     t = since(world.time_hi, world.time_lo, ball.hi, ball.lo)
     x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
-    end_flight(ball, tables, world.scene, gx, gy, t, world.time_hi, world.time_lo)
+    end_flight(ball, state, world.scene, gx, gy, t, world.time_hi, world.time_lo)
     ball.hit_kind = RESOLVE
-    arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
-    face_crossings(state, tables, w, k)
+    arrive(state, w, k, x0, y0, vx0, vy0, t)
+    face_crossings(state, w, k)
     ball.vx, ball.vy = drag * ball.vx + dvx, drag * ball.vy + dvy
     resolve_next(ball)
 
 
 @function
-def slow_down(state: State, tables: Tables, drags: Table, w: int) -> None:
+def slow_down(state: State, drags: Table, w: int) -> None:
     """Let drag act on every ball: once at each instant at which a command is given, however many are."""
     if drags is None:
         return
@@ -72,4 +72,4 @@ def slow_down(state: State, tables: Tables, drags: Table, w: int) -> None:
         return
     world.drag_hi, world.drag_lo = world.time_hi, world.time_lo
     for k in range(state.balls.shape[1]):
-        disturb(state, tables, w, k, drags[world.scene], 0.0, 0.0)
+        disturb(state, w, k, drags[world.scene], 0.0, 0.0)

@@ -20,7 +20,7 @@ from bounce_env.engine.events.crushing import crush, meet_crushed
 from bounce_env.engine.events.part_stops import part_stops, rest_parts
 from bounce_env.engine.memory.lookup import pull
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, FLYING, NEXT_HIT, NEXT_SENSOR, NEXT_ZONE, OK, RESOLVE
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import before, since
 from bounce_env.engine.motion.parts import offset_at, stop_instant
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
@@ -37,7 +37,7 @@ ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 7
 
 
 @function
-def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table) -> int:
+def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table) -> int:
     """Process the events of world `w` up to and including an instant; DONE, OUT_OF_BUDGET or LEDGER_FULL.
 
     At most `max_events` of them since `resume`.
@@ -45,7 +45,7 @@ def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, 
     """
     world = state.worlds[w]
     while True:
-        hi, lo, what, i, j = _next(state, tables, w, until_hi, until_lo)
+        hi, lo, what, i, j = _next(state, w, until_hi, until_lo)
         if what == NOTHING:
             world.time_hi, world.time_lo = until_hi, until_lo
             return DONE
@@ -56,17 +56,17 @@ def run(state: State, tables: Tables, w: int, until_hi: float, until_lo: float, 
             return LEDGER_FULL
         world.time_hi, world.time_lo = hi, lo
         if what == OF_BALL:
-            world.events += _ball_event(state, tables, w, i, ledger)
+            world.events += _ball_event(state, w, i, ledger)
         elif what == OF_PAIR:
-            collide(state, tables, state.pairs, w, i, j, hi, lo, ledger)
+            collide(state, state.pairs, w, i, j, hi, lo, ledger)
             world.events += 1
         else:
-            part_stops(state, tables, state.motions, tables.parts, world, w, i, ledger)
+            part_stops(state, state.motions, state.parts, world, w, i, ledger)
             world.events += 1
 
 
 @function
-def _next(state: State, tables: Tables, w: int, until_hi: float, until_lo: float) -> tuple[float, float, int, int, int]:
+def _next(state: State, w: int, until_hi: float, until_lo: float) -> tuple[float, float, int, int, int]:
     hi, lo, what, i, j = math.inf, 0.0, NOTHING, -1, -1
     for k in range(state.balls.shape[1]):
         b = state.balls[w, k]
@@ -76,7 +76,7 @@ def _next(state: State, tables: Tables, w: int, until_hi: float, until_lo: float
     if before(pair_hi, pair_lo, hi, lo):
         hi, lo, what, i, j = pair_hi, pair_lo, OF_PAIR, one, other
     scene = state.worlds[w].scene
-    m, stop_hi, stop_lo = _first_stop(state.motions, tables.parts, w, scene, until_hi, until_lo)
+    m, stop_hi, stop_lo = _first_stop(state.motions, state.parts, w, scene, until_hi, until_lo)
     if before(stop_hi, stop_lo, hi, lo):
         hi, lo, what, i = stop_hi, stop_lo, OF_PART, m
     return hi, lo, what, i, j
@@ -135,44 +135,44 @@ def _stop_for_budget(state: State, w: int) -> None:
 
 
 @function
-def _ball_event(state: State, tables: Tables, w: int, k: int, ledger: Table) -> int:
+def _ball_event(state: State, w: int, k: int, ledger: Table) -> int:
     """Process the ball's next event; returns how many events it counts for in the budget."""
     ball = state.balls[w, k]
     if ball.next_kind == NEXT_ZONE:
         scene = state.worlds[w].scene
-        gx, gy = pull(tables.gravity, ball)
-        plan_zones(ball, state, tables, state.zones, tables.parts, w, k, scene, gx, gy, ball.zone_after)
-        plan_parts(state, tables, w, k)
+        gx, gy = pull(state.gravity, ball)
+        plan_zones(ball, state, state.zones, state.parts, w, k, scene, gx, gy, ball.zone_after)
+        plan_parts(state, w, k)
         return 0
     if ball.next_kind == NEXT_SENSOR:
-        cross(state, tables, w, k, ledger)
+        cross(state, w, k, ledger)
         return 1
     if ball.status == CRUSHED:
-        meet_crushed(state, tables, state.motions, tables.parts, w, k, ball.part_index, ledger)
+        meet_crushed(state, state.motions, state.parts, w, k, ball.part_index, ledger)
         return 1
     planning = ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE
     bounces = state.worlds[w].bounces
-    _hit(state, tables, w, k, ledger)
+    _hit(state, w, k, ledger)
     # A ball that is only planned anew has met nothing.
     return 0 if planning and state.worlds[w].bounces == bounces and ball.contact == FLYING else 1
 
 
 @function
-def _hit(state: State, tables: Tables, w: int, k: int, ledger: Table) -> None:
+def _hit(state: State, w: int, k: int, ledger: Table) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    gx, gy = pull(tables.gravity, ball)
+    gx, gy = pull(state.gravity, ball)
     # A kept hit is a duration from the flight's start, so that its own rounding is all there is.
     t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
     x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
-    end_flight(ball, tables, scene, gx, gy, t, ball.next_hi, ball.next_lo)
-    snap(state, tables, w, k)
-    arrive(state, tables, w, k, x0, y0, vx0, vy0, t)
+    end_flight(ball, state, scene, gx, gy, t, ball.next_hi, ball.next_lo)
+    snap(state, w, k)
+    arrive(state, w, k, x0, y0, vx0, vy0, t)
     at_once = _is_over_at_once(ball, t) and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
     bounces = state.worlds[w].bounces
-    resolve(state, tables, w, k, at_once, ledger)
+    resolve(state, w, k, at_once, ledger)
     ball.confined += state.worlds[w].bounces > bounces
     if ball.status == CRUSHED:
-        crush(state, tables, state.motions, tables.parts, w, k, ledger)
+        crush(state, state.motions, state.parts, w, k, ledger)
 
 
 @function
@@ -183,7 +183,7 @@ def _is_over_at_once(ball: Record, t: float) -> bool:
 
 
 @function
-def restart(state: State, tables: Tables, w: int) -> None:
+def restart(state: State, w: int) -> None:
     """Set world `w` back to time 0 with its parts where they start; balls are placed after this."""
     world = state.worlds[w]
     world.time_hi, world.time_lo = 0.0, 0.0
@@ -193,8 +193,8 @@ def restart(state: State, tables: Tables, w: int) -> None:
     clear_hits(state, w)
     _cool_down(state.cooling, w)
     _switch_on(state.disabled, w)
-    count = tables.scenes[world.scene].parts
-    rest_parts(state.motions, tables.parts, state.ends, tables.guides, w, world.scene, count)
+    count = state.scenes[world.scene].parts
+    rest_parts(state.motions, state.parts, state.ends, state.guides, w, world.scene, count)
 
 
 @function

@@ -9,7 +9,7 @@ from bounce_env.engine.detect.schedule import plan_parts
 from bounce_env.engine.events.flights import disturb
 from bounce_env.engine.memory.lookup import ends_of, is_dragged, side_of_part, turn_of
 from bounce_env.engine.memory.records import CRUSHED, OUT, PART_STOPS
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.dragged_wall import move_ends, next_stop_of_ends, set_ends_off, stop_ends
 from bounce_env.engine.motion.parts import core_at, kept_offset, stop_instant, surface_velocity
 from bounce_env.engine.tolerances import CLEARANCE
@@ -31,14 +31,14 @@ def set_off(motion: Record, part: Record, world: Record, velocity: float) -> Non
 
 
 @function
-def resume_part(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int) -> None:
+def resume_part(state: State, motions: Table, parts: Table, w: int, m: int) -> None:
     """Let part `m` move, from now on, as it was last commanded to."""
     if motions is None or parts is None:
         return
     motion, world = motions[w, m], state.worlds[w]
     part = parts[world.scene, m]
     if is_dragged(ends_of(state.ends, w, m), part):
-        _set_wall_off(motion, state.ends, tables.guides, world, w, m)
+        _set_wall_off(motion, state.ends, state.guides, world, w, m)
     else:
         set_off(motion, part, world, motion.command)
 
@@ -81,63 +81,61 @@ def _rest_ends(all_ends: Table, guides: Table, w: int, m: int, scene: int) -> No
 
 
 @routine
-def replan_part(state: State, tables: Tables, zones: Table, w: int, m: int) -> None:
+def replan_part(state: State, zones: Table, w: int, m: int) -> None:
     """Search anew for every ball that part `m` can reach: it has changed its speed."""
     if zones is None:
         return
     for k in range(state.balls.shape[1]):
         if zones[w, k, m].inside and state.balls[w, k].status != OUT:
-            plan_parts(state, tables, w, k)
+            plan_parts(state, w, k)
 
 
 @function
-def end_rides(state: State, tables: Tables, w: int, m: int) -> None:
+def end_rides(state: State, w: int, m: int) -> None:
     """End the flights of the balls that part `m` carries: they are resolved anew once it moves otherwise.
 
     Of a wall without thickness those of all balls of no radius: their side of it is told by its present motion.
     """
     for k in range(state.balls.shape[1]):
         if state.balls[w, k].rides == m or side_of_part(state.part_sides, w, k, m) != 0:
-            disturb(state, tables, w, k, 1.0, 0.0, 0.0)
+            disturb(state, w, k, 1.0, 0.0, 0.0)
 
 
 @routine
-def part_stops(
-    state: State, tables: Tables, motions: Table, parts: Table, world: Record, w: int, m: int, ledger: Table
-) -> None:
+def part_stops(state: State, motions: Table, parts: Table, world: Record, w: int, m: int, ledger: Table) -> None:
     """Let part `m` come to a stop now: it stands there, or turns back if it is a shuttle."""
     if motions is None or parts is None:
         return
     motion, part = motions[w, m], parts[world.scene, m]
     hi, lo = stop_instant(motion, part)
     offset = part.span if motion.velocity > 0.0 else 0.0
-    _halt(state, tables, motion, part, world, w, m, offset, False, hi, lo, ledger)
+    _halt(state, motion, part, world, w, m, offset, False, hi, lo, ledger)
 
 
 @routine
-def block(state: State, tables: Tables, motions: Table, parts: Table, w: int, m: int, ledger: Table) -> None:
+def block(state: State, motions: Table, parts: Table, w: int, m: int, ledger: Table) -> None:
     """Let part `m` stop now, against a ball that is crushed."""
     if motions is None or parts is None:
         return
     world = state.worlds[w]
     motion, part, hi, lo = motions[w, m], parts[world.scene, m], world.time_hi, world.time_lo
     offset = kept_offset(motion, part, hi, lo)
-    _halt(state, tables, motion, part, world, w, m, offset, True, hi, lo, ledger)
+    _halt(state, motion, part, world, w, m, offset, True, hi, lo, ledger)
 
 
 @function
 def _halt(
-    state: State, tables: Tables, motion: Record, part: Record, world: Record, w: int, m: int,
+    state: State, motion: Record, part: Record, world: Record, w: int, m: int,
     offset: float, blocked: bool, hi: float, lo: float, ledger: Table,
 ) -> None:  # fmt: skip
     """Let part `m` stop at the instant (hi, lo): where it is if it is `blocked`, or as it comes to a stop."""
-    end_rides(state, tables, w, m)
+    end_rides(state, w, m)
     _let_caught_go(state, w, m)
     if is_dragged(ends_of(state.ends, w, m), part):
-        _halt_wall(motion, part, world, state.ends, tables.guides, w, m, blocked, hi, lo, ledger)
+        _halt_wall(motion, part, world, state.ends, state.guides, w, m, blocked, hi, lo, ledger)
     else:
-        _halt_capsule(motion, part, world, turn_of(tables.turns, world.scene, m), offset, hi, lo, ledger)
-    replan_part(state, tables, state.zones, w, m)
+        _halt_capsule(motion, part, world, turn_of(state.turns, world.scene, m), offset, hi, lo, ledger)
+    replan_part(state, state.zones, w, m)
 
 
 @function

@@ -1,40 +1,47 @@
-"""The packed layout: what a scene and a world are in memory. Every field has 8 bytes.
+"""The state: all that kernels read and write, one tuple of arrays for a batch of worlds.
 
-A batch has `n` worlds. What never changes (`Tables`) is padded over the scenes of the batch, and each world holds the
-index of its scene; what moves (`State`) is padded likewise. A member that no scene of the batch needs is None, and
-the kernel is compiled without it: the set of members that are not None is the set of features.
+What never changes, the scenes, is padded over the scenes of the batch, and each world holds the index of its scene;
+what moves is padded likewise. A member that no scene of the batch needs is None, and kernels are compiled without it:
+the set of members that are not None is the set of features.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.compile.jit import borrow, function
-from bounce_env.engine.memory.records import BALL, COOLING, ENDS, MOTION, PAIR, TOUCH, TOUCHES, WORLD, ZONE, Array
+from bounce_env.engine.memory.records import (
+    BALL,
+    COOLING,
+    ENDS,
+    MOTION,
+    PAIR,
+    TOUCH,
+    TOUCHES,
+    WORLD,
+    ZONE,
+    Array,
+)
 
 
-class Tables(NamedTuple):
-    """Scenes of a batch, padded; first axis scenes, second axis rows. None: no scene has any."""
+class State(NamedTuple):
+    """Scenes and worlds of a batch; None: no scene of the batch has any."""
 
+    # The scenes: first axis scenes, second axis rows.
     scenes: Array
     elements: Array
     gravity: Array | None  # (scenes, 2) m/s^2; there as well where a scene has a field
     faces: Array | None
-    gates: Array | None  # (scenes, faces) int8: 1 for a one-way wall; None: no scene has one
+    gates: Array | None  # (scenes, faces) int8: 1 for a one-way wall
     circles: Array | None
     arcs: Array | None
     sensors: Array | None
     rings: Array | None
     edges: Array | None  # of fields
     parts: Array | None
-    turns: Array | None  # (scenes, parts) int8: 1 or -1, which way a part turns; 0 slides; None: no scene has any
+    turns: Array | None  # (scenes, parts) int8: 1 or -1, which way a part turns; 0 slides
     guides: Array | None  # (scenes, parts) GUIDE; None: no scene has a wall that is dragged
-    drags: Array | None  # (scenes,) factor on the velocity at each instant of a command; None: no scene has any
-
-
-class State(NamedTuple):
-    """Worlds of a batch; first axis worlds. None where `Tables` has none of what it goes with."""
-
+    drags: Array | None  # (scenes,) factor on the velocity at each instant of a command
+    # The worlds: first axis worlds.
     worlds: Array
     balls: Array  # (worlds, balls)
     motions: Array | None  # (worlds, parts)
@@ -53,75 +60,47 @@ class State(NamedTuple):
     hits: Array  # (worlds, elements) int64: how often each was struck or crossed in the last step
 
 
-def new_state(tables: Tables, worlds: int, balls: int, point: bool, switches: bool = False) -> State:
-    """Zeroed state for `worlds` worlds of `balls` balls each.
+_FIRST_OF_WORLDS = State._fields.index("worlds")
+
+
+def moving(state: State) -> tuple[Array, ...]:
+    """Return what changes while worlds are played: the arrays with a row for each world."""
+    return tuple(array for array in state[_FIRST_OF_WORLDS:] if array is not None)
+
+
+def copy_of_world(state: State, w: int) -> State:
+    """Return a copy of world `w` alone, beside the same scenes."""
+    worlds = zip(State._fields, state, strict=True)
+    rows = {name: array[w : w + 1].copy() for name, array in [*worlds][_FIRST_OF_WORLDS:] if array is not None}
+    return state._replace(**rows)
+
+
+def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, switches: bool) -> State:
+    """Return zeroed worlds of `balls` balls each beside the scenes' `tables`, by their names in `State`.
 
     point: whether the balls have no radius. switches: whether elements can be disabled.
     """
-    elements = (worlds, tables.elements.shape[1])
+    parts, guides, elements = tables["parts"], tables["guides"], tables["elements"]
 
     def sides(table: Array | None) -> Array | None:
         return None if table is None else np.zeros((worlds, balls, table.shape[1]), np.int8)
 
     return State(
+        **tables,
         worlds=np.zeros(worlds, WORLD),
         balls=np.zeros((worlds, balls), BALL),
-        motions=None if tables.parts is None else np.zeros((worlds, tables.parts.shape[1]), MOTION),
-        ends=None if tables.guides is None else np.zeros((worlds, tables.guides.shape[1]), ENDS),
-        zones=None if tables.parts is None else np.zeros((worlds, balls, tables.parts.shape[1]), ZONE),
-        face_sides=sides(tables.faces) if point else None,
-        arc_sides=sides(tables.arcs) if point else None,
-        part_sides=sides(tables.guides) if point else None,
-        sensor_sides=sides(tables.sensors),
-        ring_sides=sides(tables.rings),
-        edge_sides=sides(tables.edges),
+        motions=None if parts is None else np.zeros((worlds, parts.shape[1]), MOTION),
+        ends=None if guides is None else np.zeros((worlds, guides.shape[1]), ENDS),
+        zones=None if parts is None else np.zeros((worlds, balls, parts.shape[1]), ZONE),
+        face_sides=sides(tables["faces"]) if point else None,
+        arc_sides=sides(tables["arcs"]) if point else None,
+        part_sides=sides(guides) if point else None,
+        sensor_sides=sides(tables["sensors"]),
+        ring_sides=sides(tables["rings"]),
+        edge_sides=sides(tables["edges"]),
         pairs=None if point or balls == 1 else np.zeros((worlds, balls, balls), PAIR),
         touches=np.zeros((worlds, TOUCHES), TOUCH),
-        disabled=np.zeros(elements, np.int8) if switches else None,
-        cooling=np.zeros(elements, COOLING) if tables.elements["cooldown"].any() else None,
-        hits=np.zeros(elements, np.int64),
-    )
-
-
-@function
-def borrow_state(state: State) -> State:
-    """The same state, borrowed; see `engine.compile.jit.borrow`."""
-    return State(
-        borrow(state.worlds),
-        borrow(state.balls),
-        borrow(state.motions),
-        borrow(state.ends),
-        borrow(state.zones),
-        borrow(state.face_sides),
-        borrow(state.arc_sides),
-        borrow(state.part_sides),
-        borrow(state.sensor_sides),
-        borrow(state.ring_sides),
-        borrow(state.edge_sides),
-        borrow(state.pairs),
-        borrow(state.touches),
-        borrow(state.disabled),
-        borrow(state.cooling),
-        borrow(state.hits),
-    )
-
-
-@function
-def borrow_tables(tables: Tables) -> Tables:
-    """The same tables, borrowed."""
-    return Tables(
-        borrow(tables.scenes),
-        borrow(tables.elements),
-        borrow(tables.gravity),
-        borrow(tables.faces),
-        borrow(tables.gates),
-        borrow(tables.circles),
-        borrow(tables.arcs),
-        borrow(tables.sensors),
-        borrow(tables.rings),
-        borrow(tables.edges),
-        borrow(tables.parts),
-        borrow(tables.turns),
-        borrow(tables.guides),
-        borrow(tables.drags),
+        disabled=np.zeros((worlds, elements.shape[1]), np.int8) if switches else None,
+        cooling=np.zeros((worlds, elements.shape[1]), COOLING) if elements["cooldown"].any() else None,
+        hits=np.zeros((worlds, elements.shape[1]), np.int64),
     )

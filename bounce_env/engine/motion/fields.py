@@ -1,15 +1,15 @@
 """The acceleration of a ball: gravity, and the fields that it is in."""
 
 from bounce_env.engine.compile.jit import Record, Table, function
-from bounce_env.engine.memory.state import State, Tables
+from bounce_env.engine.memory.state import State
 
 
 @function
-def accelerate(state: State, tables: Tables, w: int, k: int) -> None:
+def accelerate(state: State, w: int, k: int) -> None:
     """Set a ball's acceleration from gravity and the fields that it is in; a flight that has begun is not changed."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    ball.gx, ball.gy = gravity_of(tables.gravity, scene)
-    _add_fields(ball, tables.edges, state.edge_sides, tables.scenes[scene].fields, w, k, scene)
+    ball.gx, ball.gy = gravity_of(state.gravity, scene)
+    _add_fields(ball, state.edges, state.edge_sides, state.scenes[scene].fields, w, k, scene)
 
 
 @function

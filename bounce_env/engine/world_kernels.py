@@ -52,7 +52,7 @@ def push_balls(state: State, dvx: float, dvy: float) -> None:
 def resolve_all(state: State) -> None:
     """Resolve every ball anew: an element has been switched on or off."""
     state = borrow(state)
-    free_all(state, state.motions, state.parts, 0)
+    free_all(state, 0)
     for k in range(state.balls.shape[1]):
         disturb(state, 0, k, 1.0, 0.0, 0.0)
 
@@ -66,17 +66,17 @@ def place_ball(state: State, k: int, x: float, y: float, vx: float, vy: float) -
 @kernel
 def command_part(state: State, part: int, velocity: float) -> None:
     state = borrow(state)
-    command(state, state.motions, state.parts, 0, part, velocity)
+    command(state, 0, part, velocity)
 
 
 @kernel
 def command_wall(state: State, part: int, velocities: Floats) -> None:
     state = borrow(state)
-    command_ends(state, state.ends, 0, part, velocities[0, 0], velocities[0, 1], velocities[1, 0], velocities[1, 1])
+    command_ends(state, 0, part, (velocities[0, 0], velocities[0, 1]), (velocities[1, 0], velocities[1, 1]))
 
 
 @kernel
 def resume_as_told(state: State, part: int) -> None:
     """Let a part move on as it was commanded to, before any flight is planned: no ball has to mind it yet."""
     state = borrow(state)
-    resume_part(state, state.motions, state.parts, 0, part)
+    resume_part(state, 0, part)

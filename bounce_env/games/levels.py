@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.compile.jit import Record, Table, from_python, function
+from bounce_env.engine.compile.jit import Record, from_python, function, where
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.parts import offset_at
+from bounce_env.engine.motion.readout import offset_now
 from bounce_env.games.field import place_seen
 from bounce_env.games.streams import LAYOUTS, LEVELS, uniform
 from bounce_env.scene import Bumper, Scene, moves
@@ -115,21 +115,21 @@ def enter_level(levels: Levels, state: State, scene: int, level: int) -> None:
     arrange(levels.bumpers, levels, scene, level, MANY)
     for j in range(levels.bumpers.shape[1]):
         bumper = levels.bumpers[scene, j]
-        _put_circle(state.circles, scene, bumper)
-        _put_part(state.parts, scene, bumper)
+        _put_circle(state, scene, bumper)
+        _put_part(state, scene, bumper)
 
 
-@function
-def _put_circle(circles: Table, scene: int, bumper: Record) -> None:
-    if circles is not None and bumper.circle >= 0:
-        circles[scene, bumper.circle].x = bumper.x0
-        circles[scene, bumper.circle].y = bumper.y0
+@where("circles")
+def _put_circle(state: State, scene: int, bumper: Record) -> None:
+    if bumper.circle >= 0:
+        circle = state.circles[scene, bumper.circle]
+        circle.x, circle.y = bumper.x0, bumper.y0
 
 
-@function
-def _put_part(parts: Table, scene: int, bumper: Record) -> None:
-    if parts is not None and bumper.part >= 0:
-        part = parts[scene, bumper.part]
+@where("parts")
+def _put_part(state: State, scene: int, bumper: Record) -> None:
+    if bumper.part >= 0:
+        part = state.parts[scene, bumper.part]
         dx, dy = bumper.x1 - bumper.x0, bumper.y1 - bumper.y0
         part.x, part.y, part.span = bumper.x0, bumper.y0, abs(dx) + abs(dy)  # one of them is 0
         part.ux, part.uy = dx / part.span, dy / part.span
@@ -208,7 +208,7 @@ def observe_bumpers(levels: Levels, state: State, field: Record, w: int, out: Ar
         if bumper.part < 0:
             i = _observe_place(field, bumper.x0, bumper.y0, w, out, i)
         else:
-            i = _observe_rider(state, state.motions, state.parts, field, bumper.part, w, out, i)
+            i = _observe_rider(state, field, bumper.part, w, out, i)
             i = _observe_place(field, bumper.x0, bumper.y0, w, out, i)
             i = _observe_place(field, bumper.x1, bumper.y1, w, out, i)
 
@@ -219,15 +219,14 @@ def _observe_place(field: Record, x: float, y: float, w: int, out: Array, i: int
     return i + 2
 
 
-@function
-def _observe_rider(
-    state: State, motions: Table, parts: Table, field: Record, m: int, w: int, out: Array, i: int
-) -> int:  # fmt: skip
-    if motions is None or parts is None:
-        return i
-    world, motion = state.worlds[w], motions[w, m]
-    part = parts[world.scene, m]
-    offset = offset_at(motion, world.time_hi, world.time_lo)
+def _no_rider(state: State, field: Record, m: int, w: int, out: Array, i: int) -> int:
+    return i
+
+
+@where("parts", otherwise=_no_rider)
+def _observe_rider(state: State, field: Record, m: int, w: int, out: Array, i: int) -> int:
+    motion, part = state.motions[w, m], state.parts[state.worlds[w].scene, m]
+    offset = offset_now(state, w, m)
     i = _observe_place(field, part.x + offset * part.ux, part.y + offset * part.uy, w, out, i)
     out[w, i], out[w, i + 1] = motion.velocity * part.ux / FASTEST, motion.velocity * part.uy / FASTEST
     return i + 2

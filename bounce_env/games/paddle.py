@@ -6,14 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from bounce_env.engine.compile.jit import Table, function
-from bounce_env.engine.events.commands import command, command_unwatched
+from bounce_env.engine.compile.jit import function
+from bounce_env.engine.events.commands import command, command_unwatched, full_speed
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import DONE, clear_hits, is_calm, restart, resume, run
 from bounce_env.engine.memory.records import OUT, Array
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.parts import offset_at
-from bounce_env.engine.motion.readout import ball_now, core_now
+from bounce_env.engine.motion.readout import ball_now, core_now, offset_now
 from bounce_env.engine.motion.sincos import sin_cos
 from bounce_env.games.actions import Continuous, Discrete, clipped
 from bounce_env.games.episode import (
@@ -66,18 +65,10 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     out[w, 2] = vx * (1.0 / REFERENCE_SPEED)
     out[w, 3] = vy * (1.0 / REFERENCE_SPEED)
     # The product may exceed the ends of the range by its rounding.
-    out[w, 4] = min(max(paddle_offset(state, state.motions, field.part, w) * field.rail_scale - 1.0, -1.0), 1.0)
+    out[w, 4] = min(max(offset_now(state, w, field.part) * field.rail_scale - 1.0, -1.0), 1.0)
     observe_bumpers(rules.levels, state, field, w, out, OBSERVATION_SIZE)
     if rules.pace.repeat > 0.0:
         out[w, out.shape[1] - 1] = clipped(worlds.held[w, 0])
-
-
-@function
-def paddle_offset(state: State, motions: Table, m: int, w: int) -> float:
-    """Where the paddle is on its rail now [m]."""
-    if motions is None:
-        return 0.0
-    return offset_at(motions[w, m], state.worlds[w].time_hi, state.worlds[w].time_lo)
 
 
 @function
@@ -122,7 +113,7 @@ def potential(rules: Rules, worlds: Worlds, w: int) -> float:
     state = worlds.state
     field = rules.fields[state.worlds[w].scene]
     x, y, _, _ = ball_now(state, w, 0)
-    x0, y0, x1, y1 = core_now(state.motions, state.parts, state.turns, state.ends, w, state.worlds[w], field.part)
+    x0, y0, x1, y1 = core_now(state, w, field.part)
     away = (x - 0.5 * (x0 + x1)) * field.rail_ux + (y - 0.5 * (y0 + y1)) * field.rail_uy
     return -abs(away) / field.across
 
@@ -150,7 +141,7 @@ def _play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     episode.steps += 1
     while episode.frames < last:
         hold_action(worlds, actions, w, rules.pace.repeat)
-        move(state, state.motions, state.parts, part, w, clipped(worlds.held[w, 0]))
+        move(state, w, part, clipped(worlds.held[w, 0]))
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
         code = run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
@@ -185,9 +176,9 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
         return False
     until = frames / rules.pace.fps
     action = clipped(actions[w, 0])
-    if rules.pace.repeat > 0.0 or not steer(state, state.parts, rules.fields[world.scene].part, w, action):
+    if rules.pace.repeat > 0.0 or not steer(state, w, rules.fields[world.scene].part, action):
         return False
-    if not is_calm(state.balls, state.pairs, state.motions, state.parts, w, world.scene, until, 0.0):
+    if not is_calm(state, w, until, 0.0):
         return False
     clear_hits(state, w)
     # An episode that ended in the last step has been followed by a new one, of which this is the first step.
@@ -201,21 +192,15 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
 
 
 @function
-def steer(state: State, parts: Table, m: int, w: int, action: float) -> bool:
+def steer(state: State, w: int, m: int, action: float) -> bool:
     """As `move`, where no ball is near the paddle; otherwise it does nothing and returns False."""
-    if parts is None:
-        return True
-    world = state.worlds[w]
-    velocity = action * parts[world.scene, m].up_speed
-    return command_unwatched(world, state.motions, parts, state.zones, state.drags, w, m, velocity)
+    return command_unwatched(state, w, m, action * full_speed(state, w, m))
 
 
 @function
-def move(state: State, motions: Any, parts: Any, m: int, w: int, action: float) -> None:
+def move(state: State, w: int, m: int, action: float) -> None:
     """Let the paddle move at `action` (-1 to 1) times its greatest speed."""
-    if motions is None or parts is None:
-        return
-    command(state, motions, parts, w, m, action * parts[state.worlds[w].scene, m].up_speed)
+    command(state, w, m, action * full_speed(state, w, m))
 
 
 @function

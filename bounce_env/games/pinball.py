@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.compile.jit import Table, function, interpreted
-from bounce_env.engine.events.commands import command
+from bounce_env.engine.compile.jit import function, interpreted
+from bounce_env.engine.events.commands import command_flipper
 from bounce_env.engine.events.flights import disturb, place
 from bounce_env.engine.events.loop import DONE, clear_hits, is_calm, restart, resume, run
 from bounce_env.engine.memory.records import OUT, Array
@@ -139,17 +139,13 @@ def crossed(state: State, layout: Layout, w: int, scene: int) -> bool:
 
 
 @function
-def press(rules: Rules, worlds: Worlds, motions: Table, parts: Table, w: int, buttons: int) -> None:
+def press(rules: Rules, worlds: Worlds, w: int, buttons: int) -> None:
     """Let each flipper go up or down as its button says."""
     memory, scene = worlds.memory[w], worlds.state.worlds[w].scene
-    if motions is None or parts is None:
-        return
     for m in range(rules.layout.sides.shape[1]):
         side = rules.layout.sides[scene, m]
         if side:
-            part = parts[scene, m]
-            velocity = part.up_speed if buttons & side else -part.down_speed
-            command(worlds.state, motions, parts, w, m, velocity)
+            command_flipper(worlds.state, w, m, buttons & side != 0)
     pressed_now, let_go = buttons & ~memory.pressed, memory.pressed & ~buttons
     worlds.counters[w, FLIPS] += (pressed_now & 1) + (pressed_now >> 1)
     ready = worlds.episodes[w].frames + REST_FRAMES
@@ -197,7 +193,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
             frames -= 1
             hold_action(worlds, actions, w, rules.pace.repeat)
             buttons = in_force(rules, worlds, w, int(worlds.held[w, 0]))
-        press(rules, worlds, state.motions, state.parts, w, buttons)
+        press(rules, worlds, w, buttons)
         resume(state, w)
         episode.frames += 1
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
@@ -297,7 +293,7 @@ def glide(rules: Rules, worlds: Worlds, actions: Array, w: int) -> bool:
     if frames - memory.scored >= STUCK_FRAMES or not falls_from_high(rules, worlds, w):
         return False
     until = frames / rules.pace.fps
-    if not is_calm(state.balls, state.pairs, state.motions, worlds.state.parts, w, world.scene, until, 0.0):
+    if not is_calm(state, w, until, 0.0):
         return False
     hi, lo = world.time_hi, world.time_lo
     world.time_hi, world.time_lo = until, 0.0

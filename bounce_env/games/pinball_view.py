@@ -1,13 +1,10 @@
 """What a player of pinball sees: see the card of `bounce_env.cards.PinballEnv`."""
 
-from typing import Any
-
-from bounce_env.engine.compile.jit import Table, function
+from bounce_env.engine.compile.jit import function, where
 from bounce_env.engine.memory.records import Array
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import since
-from bounce_env.engine.motion.parts import offset_at
-from bounce_env.engine.motion.readout import ball_now
+from bounce_env.engine.motion.readout import ball_now, stroke_now
 from bounce_env.games.episode import Worlds
 from bounce_env.games.field import place_seen
 from bounce_env.games.pinball_points import FARMED, HIGHEST_MULTIPLIER
@@ -40,7 +37,7 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     x, y, vx, vy = ball_now(state, w, 0)
     out[w, 0], out[w, 1] = place_seen(table, x, y)
     out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
-    i = observe_flippers(state, state.motions, worlds.state.parts, layout, w, out, 4)
+    i = observe_flippers(state, layout, w, out, 4)
     out[w, i] = (rules.balls - episode.ball) / rules.balls
     out[w, i + 1] = save_left(memory, episode.frames) / SAVE_FRAMES
     out[w, i + 2] = hold_timer(memory, episode.frames) / HOLD_FRAMES
@@ -57,7 +54,7 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
         out[w, i + lamp] = (memory.passed >> lamp) & 1
     i += table.rollovers
     for j in range(layout.bumpers.shape[1]):
-        out[w, i + j] = cooldown_left(state.cooling, world, w, layout.bumpers[scene, j]) * layout.cooldowns[scene, j]
+        out[w, i + j] = cooldown_left(state, w, layout.bumpers[scene, j]) * layout.cooldowns[scene, j]
     i += layout.bumpers.shape[1]
     if rules.nudge:
         out[w, i] = 1.0 if memory.tilted else memory.tilt / TILT
@@ -70,25 +67,19 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
 
 
 @function
-def observe_flippers(
-    state: State, motions: Table, parts: Table, layout: Layout, w: int, out: Array, i: int
-) -> int:  # fmt: skip
+def observe_flippers(state: State, layout: Layout, w: int, out: Array, i: int) -> int:
     """How far each flipper is up, 0 to 1, from `out[w, i]` on; returns where the next number goes."""
-    if motions is None or parts is None:
-        return i
-    world = state.worlds[w]
     for m in range(layout.sides.shape[1]):
-        if layout.sides[world.scene, m]:
-            # The quotient may exceed the ends of the range by its rounding.
-            stroke = offset_at(motions[w, m], world.time_hi, world.time_lo) / parts[world.scene, m].span
-            out[w, i] = min(max(stroke, 0.0), 1.0)
+        if layout.sides[state.worlds[w].scene, m]:
+            out[w, i] = min(max(stroke_now(state, w, m), 0.0), 1.0)
             i += 1
     return i
 
 
-@function
-def cooldown_left(cooling: Table, world: Any, w: int, element: int) -> float:
+@where("cooling", otherwise=0.0)
+def cooldown_left(state: State, w: int, element: int) -> float:
     """Seconds until a bumper kicks again."""
-    if cooling is None or element < 0:
+    if element < 0:
         return 0.0
-    return max(since(cooling[w, element].hi, cooling[w, element].lo, world.time_hi, world.time_lo), 0.0)
+    cool, world = state.cooling[w, element], state.worlds[w]
+    return max(since(cool.hi, cool.lo, world.time_hi, world.time_lo), 0.0)

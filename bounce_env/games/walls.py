@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from bounce_env.engine.compile.jit import Table, function
-from bounce_env.engine.events.commands import command_ends
+from bounce_env.engine.compile.jit import function
+from bounce_env.engine.events.commands import command_ends, reach_box
 from bounce_env.engine.events.loop import DONE, clear_hits, resume
 from bounce_env.engine.memory import records as layout
 from bounce_env.engine.memory.records import OUT, Array
@@ -55,7 +55,7 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
     court = rules.courts[state.worlds[w].scene]
     x, y, vx, vy = ball_now(state, w, 0)
     x0, y0, x1, y1 = wall_now(state, w, court.part)
-    tx, ty, _ = target_of(state.rings, state.worlds[w].scene, court.ring)
+    tx, ty, _ = target_of(state, w, court.ring)
     out[w, 0], out[w, 1] = place_seen(court, x, y)
     out[w, 2], out[w, 3] = vx * (1.0 / REFERENCE_SPEED), vy * (1.0 / REFERENCE_SPEED)
     out[w, 4], out[w, 5] = place_seen(court, x0, y0)
@@ -70,7 +70,7 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
 @function
 def wall_now(state: State, w: int, part: int) -> tuple[float, float, float, float]:
     """Where the ends of the player's wall are now: x, y, x, y [m]."""
-    return core_now(state.motions, state.parts, state.turns, state.ends, w, state.worlds[w], part)
+    return core_now(state, w, part)
 
 
 @function
@@ -90,7 +90,7 @@ def potential(rules: Rules, worlds: Worlds, w: int) -> float:
     scene = worlds.state.worlds[w].scene
     court = rules.courts[scene]
     x, y, _, _ = ball_now(worlds.state, w, 0)
-    tx, ty, _ = target_of(worlds.state.rings, scene, court.ring)
+    tx, ty, _ = target_of(worlds.state, w, court.ring)
     return -math.sqrt((x - tx) * (x - tx) + (y - ty) * (y - ty)) / court.across
 
 
@@ -107,7 +107,7 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
     episode.steps += 1
     while episode.frames < last and code == DONE and state.balls[w, 0].status != layout.CRUSHED:
         hold_action(worlds, actions, w, rules.pace.repeat)
-        drag(rules, worlds, state.ends, worlds.state.guides, w, frames / rules.pace.fps)
+        drag(rules, worlds, w, frames / rules.pace.fps)
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
         until = (episode.frames - worlds.memory[w].born) / rules.pace.fps
@@ -122,21 +122,19 @@ def play(rules: Rules, worlds: Worlds, actions: Array, w: int) -> float:
 
 
 @function
-def drag(rules: Rules, worlds: Worlds, all_ends: Table, guides: Table, w: int, seconds: float) -> None:
+def drag(rules: Rules, worlds: Worlds, w: int, seconds: float) -> None:
     """Let the ends of the wall move as the action in force says, for so long, but not out of the box of its reach.
 
     Nor further apart than they may be: an end that is drawn away drags the other one along.
     """
-    if all_ends is None or guides is None:
-        return
     state, held, scene = worlds.state, worlds.held, worlds.state.worlds[w].scene
     court = rules.courts[scene]
-    guide = guides[scene, court.part]
+    left, below, right, above = reach_box(state, w, court.part)
     x0, y0, x1, y1 = wall_now(state, w, court.part)
-    vx0 = kept_inside(x0, WALL_SPEED * clipped(held[w, 0]), seconds, guide.x0, guide.x1)
-    vy0 = kept_inside(y0, WALL_SPEED * clipped(held[w, 1]), seconds, guide.y0, guide.y1)
-    vx1 = kept_inside(x1, WALL_SPEED * clipped(held[w, 2]), seconds, guide.x0, guide.x1)
-    vy1 = kept_inside(y1, WALL_SPEED * clipped(held[w, 3]), seconds, guide.y0, guide.y1)
+    vx0 = kept_inside(x0, WALL_SPEED * clipped(held[w, 0]), seconds, left, right)
+    vy0 = kept_inside(y0, WALL_SPEED * clipped(held[w, 1]), seconds, below, above)
+    vx1 = kept_inside(x1, WALL_SPEED * clipped(held[w, 2]), seconds, left, right)
+    vy1 = kept_inside(y1, WALL_SPEED * clipped(held[w, 3]), seconds, below, above)
     # How far apart two ends in uniform motion are is a convex function of time: it is greatest at an end of the step.
     dx, dy = x1 - x0 + (vx1 - vx0) * seconds, y1 - y0 + (vy1 - vy0) * seconds
     length = math.sqrt(dx * dx + dy * dy)
@@ -144,7 +142,7 @@ def drag(rules: Rules, worlds: Worlds, all_ends: Table, guides: Table, w: int, s
         excess = 0.5 * (1.0 - court.longest / length) / seconds
         vx0, vy0 = vx0 + excess * dx, vy0 + excess * dy
         vx1, vy1 = vx1 - excess * dx, vy1 - excess * dy
-    command_ends(state, all_ends, w, court.part, vx0, vy0, vx1, vy1)
+    command_ends(state, w, court.part, (vx0, vy0), (vx1, vy1))
 
 
 @function

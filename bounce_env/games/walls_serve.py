@@ -2,7 +2,7 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Table, function, routine
+from bounce_env.engine.compile.jit import function, routine, where
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import restart, resume, run
 from bounce_env.engine.memory.state import State
@@ -71,25 +71,24 @@ def draw_target(rules: Rules, worlds: Worlds, w: int, attempt: int, x: float, y:
     """Put the target anywhere on the field; False if that is too near to (x, y) [m], where the ball is launched."""
     state, episode, scene = worlds.state, worlds.episodes[w], worlds.state.worlds[w].scene
     court = rules.courts[scene]
-    radius = target_of(state.rings, scene, court.ring)[2]
+    radius = target_of(state, w, court.ring)[2]
     number = 256 * episode.ball + 2 * attempt
     tx = court.x + radius + (court.width - 2.0 * radius) * uniform(episode.seed, TARGETS, number)
     ty = court.y + radius + (court.height - 2.0 * radius) * uniform(episode.seed, TARGETS, number + 1)
-    move_target(state.rings, scene, court.ring, tx, ty)
+    move_target(state, w, court.ring, tx, ty)
     clear = TARGET_CLEAR * court.across
     return (tx - x) * (tx - x) + (ty - y) * (ty - y) > clear * clear
 
 
-@function
-def target_of(rings: Table, scene: int, ring: int) -> tuple[float, float, float]:
+@where("rings", otherwise=(0.0, 0.0, 0.0))
+def target_of(state: State, w: int, ring: int) -> tuple[float, float, float]:
     """Centre and radius of the target: x, y, radius [m]."""
-    if rings is None:
-        return 0.0, 0.0, 0.0
-    return rings[scene, ring].x, rings[scene, ring].y, rings[scene, ring].radius
+    target = state.rings[state.worlds[w].scene, ring]
+    return target.x, target.y, target.radius
 
 
-@function
-def move_target(rings: Table, scene: int, ring: int, x: float, y: float) -> None:
+@where("rings")
+def move_target(state: State, w: int, ring: int, x: float, y: float) -> None:
     """Put the target somewhere else; a ball is to be placed after this."""
-    if rings is not None:
-        rings[scene, ring].x, rings[scene, ring].y = x, y
+    target = state.rings[state.worlds[w].scene, ring]
+    target.x, target.y = x, y

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.impact import arc, capsule, circle, line
 from bounce_env.engine.motion import roots
+from bounce_env.engine.motion.flight import Flight
+from bounce_env.engine.motion.parts import Core
 
 capsule_time, circle_time, face_time = map(from_python, (capsule.capsule_time, circle.circle_time, line.face_time))
 falling_time, straight_circle_time = map(from_python, (roots.falling_time, circle.straight_circle_time))
@@ -74,7 +76,7 @@ def test_no_circle_is_stepped_over(
     horizon = 20.0
     scale = reach + math.hypot(x, y) + (math.hypot(vx, vy) + math.hypot(gx, gy) * horizon) * horizon
     slack = SLACK * scale
-    t = circle_time(x, y, vx, vy, gx, gy, reach, slack, horizon)
+    t = circle_time(Flight(x, y, vx, vy, gx, gy), reach, slack, horizon)
     end = min(t, horizon)
     samples = dense_gap(x, y, vx, vy, (gx, gy), np.linspace(0.0, end, 20_001))
     assert samples.min() >= reach - 4.0 * slack
@@ -103,9 +105,9 @@ def test_no_circle_is_stepped_over_from_a_touch(sense: float) -> None:
         gx, gy = pull * down, pull * across
         slack = SLACK * (1.0 + reach)
         if sense < 0.0:
-            t = circle_time(x, y, vx, vy, gx, gy, reach, slack, 1.0)
+            t = circle_time(Flight(x, y, vx, vy, gx, gy), reach, slack, 1.0)
         else:
-            t = crossing_time(None, reach, sense, x, y, vx, vy, gx, gy, True, slack, -1.0, 1.0)
+            t = crossing_time(Flight(x, y, vx, vy, gx, gy), None, arc.Circle(reach, sense), True, slack, -1.0, 1.0)
         end = min(t, 1.0)
         instants = np.concatenate([np.geomspace(1e-16, 1.0, 300), np.linspace(0.0, 1.0, 300)]) * end
         gaps = -sense * (dense_gap(x, y, vx, vy, (gx, gy), instants) - reach)
@@ -120,7 +122,7 @@ def test_straight_circle_time_in_closed_form(x: float, y: float, vx: float, vy: 
     distance, speed = math.hypot(x, y), math.hypot(vx, vy)
     if distance < reach * 1.0001 or speed < 1e-6:
         return
-    t = straight_circle_time(x, y, vx, vy, reach, SLACK)
+    t = straight_circle_time(Flight(x, y, vx, vy, None, None), reach, SLACK, math.inf)
     with mpmath.workdps(60):
         X, Y, VX, VY, R = map(mpmath.mpf, (x, y, vx, vy, reach))
         a, b, c = VX * VX + VY * VY, X * VX + Y * VY, X * X + Y * Y - R * R
@@ -158,7 +160,7 @@ def test_no_capsule_is_stepped_over(
     if gap(np.zeros(1))[0] < 1e-6:
         return
     slack = SLACK * (abs(x) + abs(y) + half + reach + (abs(vx) + abs(vy) - gy * 10.0) * 10.0)
-    t = capsule_time(x, y, vx, vy, 0.0, gy, ux, uy, -half, half, reach, slack, 10.0)
+    t = capsule_time(Flight(x, y, vx, vy, 0.0, gy), Core(0.0, 0.0, ux, uy, -half, half), reach, slack, 10.0)
     samples = gap(np.linspace(0.0, min(t, 10.0), 20_001))
     assert samples.min() >= -4.0 * slack
     if t < 10.0:
@@ -169,9 +171,10 @@ def test_no_capsule_is_stepped_over(
 def test_point_on_a_wall_leaves_on_its_side(side: int) -> None:
     """A ball of no radius on the wall itself is where `side` says, whatever the sign of its round-off."""
     for offset in (0.0, 1e-17, -1e-17):
-        leaving = face_time(0.5, offset, 0.1, side * 1.0, 0.0, -side * 1.0, 1.0, 0.0, 9.0, 0.0, side, SLACK, math.inf)
+        wall = line.Line(1.0, 0.0, 9.0, 0.0)
+        leaving = face_time(Flight(0.5, offset, 0.1, side * 1.0, 0.0, -side * 1.0), wall, side, SLACK, math.inf)
         assert leaving == pytest.approx(2.0, rel=1e-12)
-        closing = face_time(0.5, offset, 0.1, -side * 1.0, 0.0, 0.0, 1.0, 0.0, 9.0, 0.0, side, SLACK, math.inf)
+        closing = face_time(Flight(0.5, offset, 0.1, -side * 1.0, 0.0, 0.0), wall, side, SLACK, math.inf)
         assert closing == pytest.approx(0.0, abs=1e-15)
 
 
@@ -179,5 +182,6 @@ def test_point_on_a_wall_leaves_on_its_side(side: int) -> None:
 def test_a_point_that_turns_before_a_wall_does_not_meet_its_far_face(height: float) -> None:
     """Nearly touching in a pocket, where much counts as touching, it comes down a little and is pulled up again."""
     fall = -0.9 * math.sqrt(2.0 * 3.5 * height)
-    t = face_time(0.5, height, 1e-6, fall, 5.0, 3.5, 1.0, 0.0, 1.0, 0.0, 1.0, 4.5e-13, math.inf)
+    wall = line.Line(1.0, 0.0, 1.0, 0.0)
+    t = face_time(Flight(0.5, height, 1e-6, fall, 5.0, 3.5), wall, 1.0, 4.5e-13, math.inf)
     assert t == math.inf

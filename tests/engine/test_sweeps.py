@@ -11,12 +11,13 @@ import numpy as np
 from conftest import soak_count
 
 from bounce_env.engine.compile.jit import from_python
-from bounce_env.engine.impact import capsule
-from bounce_env.engine.impact import rotating_capsule as turning
-from bounce_env.engine.impact import stretching_wall as stretching
+from bounce_env.engine.impact import capsule, rotating_capsule, stretching_wall
+from bounce_env.engine.motion.flight import Flight
+from bounce_env.engine.motion.parts import Core
 
-turning_time, capsule_time = from_python(turning.turning_time), from_python(capsule.capsule_time)
-stretching_time = from_python(stretching.stretching_time)
+rotating_capsule_time = from_python(rotating_capsule.rotating_capsule_time)
+capsule_time = from_python(capsule.capsule_time)
+stretching_wall_time = from_python(stretching_wall.stretching_wall_time)
 
 SAMPLES = 4001
 REACH = 4.0  # m: the ball starts no further away
@@ -101,30 +102,31 @@ def hunt(draw: Callable[[np.random.Generator], Sweep]) -> None:
     assert 0.1 * count < hits < 0.9 * count
 
 
-def turning_capsule(rng):
+def a_rotating_capsule(rng):
     ball, angle, front, reach = start(rng)
     spin = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-1.0, math.log10(200.0)))
     horizon = float(rng.uniform(0.1, 3.0) / abs(spin))
-    core = (math.cos(angle), math.sin(angle), front, reach, spin)
+    core = Core(0.0, 0.0, math.cos(angle), math.sin(angle), 0.0, front)
     return Sweep(
         ball, front, reach, 0.0, horizon,
         lambda t: gap(t, ball, angle, spin, (0.0, 0.0), 0.0, front, reach),
-        lambda slack: turning_time(*ball, *core, slack, horizon),
+        lambda slack: rotating_capsule_time(Flight(*ball), core, reach, spin, slack, horizon),
     )  # fmt: skip
 
 
-def sliding_capsule(rng):
+def a_sliding_capsule(rng):
     ball, angle, front, reach = start(rng)
     ux, uy = math.cos(angle), math.sin(angle)
     speed = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-2.0, 2.0))
     drift, back = (speed * ux, speed * uy), -front * float(rng.uniform(0.0, 1.0))
     horizon = float(rng.uniform(0.5, 3.0) * front / abs(speed))
     x, y, vx, vy, gx, gy = ball
-    seen = (x, y, vx - drift[0], vy - drift[1], gx, gy)
+    seen = Flight(x, y, vx - drift[0], vy - drift[1], gx, gy)
+    core = Core(0.0, 0.0, ux, uy, back, front)
     return Sweep(
         ball, front, reach, abs(speed), horizon,
         lambda t: gap(t, ball, angle, 0.0, drift, back, front, reach),
-        lambda slack: capsule_time(*seen, ux, uy, back, front, reach, slack, horizon),
+        lambda slack: capsule_time(seen, core, reach, slack, horizon),
     )  # fmt: skip
 
 
@@ -139,7 +141,7 @@ def wall_gap(t, ball, ends, speeds, reach):
     return np.hypot(px - share * dx, py - share * dy) - real(reach)
 
 
-def stretching_wall(rng):
+def a_stretching_wall(rng):
     ball, angle, length, reach = start(rng)
     ends = np.array([(0.0, 0.0), (length * math.cos(angle), length * math.sin(angle))])
     fastest = float(min(100.0, 200.0 * length) * 10.0 ** rng.uniform(-3.0, 0.0))
@@ -151,24 +153,24 @@ def stretching_wall(rng):
     if math.hypot(dx + ex * nearest, dy + ey * nearest) < 0.05 * length:
         horizon = 0.9 * nearest
     x, y, vx, vy, gx, gy = ball
-    seen = (x, y, vx - float(speeds[0, 0]), vy - float(speeds[0, 1]), gx, gy)
+    seen = Flight(x, y, vx - float(speeds[0, 0]), vy - float(speeds[0, 1]), gx, gy)
     return Sweep(
         ball, length, reach, 4.0 * fastest, horizon,
         lambda t: wall_gap(t, ball, ends, speeds, reach),
-        lambda slack: stretching_time(*seen, dx, dy, ex, ey, reach, 0, slack, horizon),
+        lambda slack: stretching_wall_time(seen, dx, dy, ex, ey, reach, 0, slack, horizon),
     )  # fmt: skip
 
 
-def test_turning_capsules() -> None:
+def test_rotating_capsules() -> None:
     """Flippers at up to 200 rad/s."""
-    hunt(turning_capsule)
+    hunt(a_rotating_capsule)
 
 
 def test_sliding_capsules() -> None:
     """Paddles at up to 100 m/s."""
-    hunt(sliding_capsule)
+    hunt(a_sliding_capsule)
 
 
 def test_stretching_walls() -> None:
     """Walls whose ends are dragged at up to 100 m/s, and turn at up to 200 rad/s."""
-    hunt(stretching_wall)
+    hunt(a_stretching_wall)

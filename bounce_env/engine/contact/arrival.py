@@ -2,94 +2,89 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Feature, Record, Table, function
+from bounce_env.engine.compile.jit import function, where
 from bounce_env.engine.contact.touching import on_capsule
-from bounce_env.engine.memory.lookup import ends_of, side_of_part, turn_of
+from bounce_env.engine.memory.lookup import side_of_part
 from bounce_env.engine.memory.records import NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import fly, magnitude, touch_tolerance
-from bounce_env.engine.motion.parts import core_at
+from bounce_env.engine.motion.flight import flight_of, fly, path_bound, touch_tolerance
+from bounce_env.engine.motion.parts import core_at, moving_part
 from bounce_env.engine.tolerances import CORNER, ROOM_TO_MEET, SEARCH_ENDS, ULPS_OF_LENGTH
+
+
+@function
+def end_flight(state: State, w: int, k: int, t: float, hi: float, lo: float) -> None:
+    """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
+    ball, extent = state.balls[w, k], state.scenes[state.worlds[w].scene].extent
+    flight = flight_of(state, ball)
+    ball.slack = touch_tolerance(flight, extent, t)
+    way = path_bound(flight, t)
+    if way > CORNER * ULPS_OF_LENGTH * extent:
+        ball.confined = 0
+    ball.strayed += way
+    if ball.strayed > ROOM_TO_MEET * extent:
+        ball.strayed, ball.legs = 0.0, ball.legs + 1
+    fly(ball, flight, t, hi, lo)
+    if t > 0.0:  # in no time nothing is rounded, and a push may wait to be resolved
+        _keep_along(state, w, k)
+
+
+@where("faces")
+def _keep_along(state: State, w: int, k: int) -> None:
+    """Take from the velocity of a ball that has slid on a wall what is not along it: rounding, of speeds it had."""
+    ball = state.balls[w, k]
+    if ball.contact >= 0:
+        face = state.faces[state.worlds[w].scene, ball.contact]
+        rate = ball.vx * face.ux + ball.vy * face.uy
+        ball.vx, ball.vy = rate * face.ux, rate * face.uy
 
 
 @function
 def snap(state: State, w: int, k: int) -> None:
     """Put the ball on the surface of what it hits, along the normal: the rounding of the flight ends here."""
-    ball, scene = state.balls[w, k], state.worlds[w].scene
+    ball = state.balls[w, k]
     face, part = -1, -1
     if ball.next_kind == NEXT_PART:
         part = ball.part_index
     elif ball.hit_kind in (ON_FACE, OFF_END):
         face = ball.hit_index
     elif ball.hit_kind == ON_CIRCLE:
-        _snap_to_circle(ball, state.circles, scene)
+        _snap_to_circle(state, w, k)
     elif ball.hit_kind == ON_ARC:
-        _snap_to_arc(ball, state.arcs, scene)
+        _snap_to_arc(state, w, k)
     elif ball.contact >= 0:
         face = ball.contact
     else:
         part = ball.rides
     if face >= 0:
-        _snap_to_face(ball, state.faces, face, scene)
+        _snap_to_face(state, w, k, face)
     if part >= 0:
-        _snap_to_part(state, state.motions, state.parts, w, k, part)
+        _snap_to_part(state, w, k, part)
 
 
-@function
-def end_flight(
-    ball: Record, state: State, scene: int, gx: Feature, gy: Feature, t: float, hi: float, lo: float
-) -> None:
-    """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
-    extent = state.scenes[scene].extent
-    ball.slack = touch_tolerance(extent, ball.vx, ball.vy, gx, gy, t)
-    way = (abs(ball.vx) + abs(ball.vy) + magnitude(gx, gy) * t) * t
-    if way > CORNER * ULPS_OF_LENGTH * extent:
-        ball.confined = 0
-    ball.strayed += way
-    if ball.strayed > ROOM_TO_MEET * extent:
-        ball.strayed, ball.legs = 0.0, ball.legs + 1
-    fly(ball, gx, gy, t, hi, lo)
-    if t > 0.0:  # in no time nothing is rounded, and a push may wait to be resolved
-        _keep_along(ball, state.faces, scene)
-
-
-@function
-def _keep_along(ball: Record, faces: Table, scene: int) -> None:
-    """Take from the velocity of a ball that has slid on a wall what is not along it: rounding, of speeds it had."""
-    if faces is None or ball.contact < 0:
-        return
-    face = faces[scene, ball.contact]
-    rate = ball.vx * face.ux + ball.vy * face.uy
-    ball.vx, ball.vy = rate * face.ux, rate * face.uy
-
-
-@function
-def _snap_to_face(ball: Record, faces: Table, index: int, scene: int) -> None:
-    if faces is None:
-        return
-    face = faces[scene, index]
+@where("faces")
+def _snap_to_face(state: State, w: int, k: int, index: int) -> None:
+    ball, face = state.balls[w, k], state.faces[state.worlds[w].scene, index]
     height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
     error = height - math.copysign(face.reach, height)
     ball.x += error * face.uy
     ball.y -= error * face.ux
 
 
-@function
-def _snap_to_circle(ball: Record, circles: Table, scene: int) -> None:
-    if circles is None:
-        return
-    circle = circles[scene, ball.hit_index]
+@where("circles")
+def _snap_to_circle(state: State, w: int, k: int) -> None:
+    ball = state.balls[w, k]
+    circle = state.circles[state.worlds[w].scene, ball.hit_index]
     dx, dy = ball.x - circle.x, ball.y - circle.y
     stretch = circle.reach / math.sqrt(dx * dx + dy * dy)
     ball.x = circle.x + dx * stretch
     ball.y = circle.y + dy * stretch
 
 
-@function
-def _snap_to_arc(ball: Record, arcs: Table, scene: int) -> None:
-    if arcs is None:
-        return
-    arc = arcs[scene, ball.hit_index]
+@where("arcs")
+def _snap_to_arc(state: State, w: int, k: int) -> None:
+    ball = state.balls[w, k]
+    arc = state.arcs[state.worlds[w].scene, ball.hit_index]
     dx, dy = ball.x - arc.x, ball.y - arc.y
     distance = math.sqrt(dx * dx + dy * dy)
     reach = arc.outer if abs(distance - arc.outer) <= abs(distance - arc.inner) else arc.inner
@@ -97,16 +92,12 @@ def _snap_to_arc(ball: Record, arcs: Table, scene: int) -> None:
     ball.y = arc.y + dy * (reach / distance)
 
 
-@function
-def _snap_to_part(state: State, motions: Table, parts: Table, w: int, k: int, m: int) -> None:
-    if parts is None or motions is None:
-        return
-    ball, scene = state.balls[w, k], state.worlds[w].scene
-    part, ends = parts[scene, m], ends_of(state.ends, w, m)
-    x, y, ux, uy, back, front = core_at(part, motions[w, m], turn_of(state.turns, scene, m), ends, ball.hi, ball.lo)
-    side = side_of_part(state.part_sides, w, k, m)
-    nx, ny, distance, _ = on_capsule(ball.x - x, ball.y - y, ux, uy, back, front, side, ball.slack)
+@where("parts")
+def _snap_to_part(state: State, w: int, k: int, m: int) -> None:
+    ball, part = state.balls[w, k], moving_part(state, w, m)
+    core, reach = core_at(part, ball.hi, ball.lo), part.shape.reach
+    nx, ny, distance, _ = on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.slack)
     # A search may end before a hit: then there is nothing to put the ball on.
-    if distance - part.reach <= SEARCH_ENDS * (part.reach + front - back):
-        ball.x += (part.reach - distance) * nx
-        ball.y += (part.reach - distance) * ny
+    if distance - reach <= SEARCH_ENDS * (reach + core.front - core.back):
+        ball.x += (reach - distance) * nx
+        ball.y += (reach - distance) * ny

@@ -5,20 +5,20 @@ is closed on. So a corner is right from either side, and mirror images stay mirr
 (whether it flies, slides or rests) is decided in `engine.contact.resolve`.
 """
 
-from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.law import bounce, capped
 from bounce_env.engine.contact.restitution import (
     along_speed,
     closing_speed,
     is_soft,
-    press_of,
+    normal_load,
     push_off,
     rolling_speed,
     slow_speed,
-    towards,
+    surface_speed,
 )
 from bounce_env.engine.contact.squeeze import is_crushed, note_strike
-from bounce_env.engine.memory.ledger import count_hit, log
+from bounce_env.engine.memory.ledger import Surface, append_contact, count_hit
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import before, later
@@ -44,7 +44,7 @@ def take_soft(ball: Record, touches: Table, w: int, extent: float) -> None:
     """
     for i in range(ball.touched):
         touch = touches[w, i]
-        closing, press = closing_speed(ball, touch), press_of(ball, touch)
+        closing, press = closing_speed(ball, touch), normal_load(ball, touch)
         if closing < 0.0 < press and is_soft(-closing, press, extent):
             push_off(ball, touch, closing)
 
@@ -103,8 +103,8 @@ def _is_damped(state: State, w: int, k: int, i: int, closing: float) -> bool:
         return False
     touch = state.touches[w, i]
     material = state.elements[world.scene, touch.element]
-    press = press_of(ball, touch)
-    if touch.moves or towards(touch) != 0.0:
+    press = normal_load(ball, touch)
+    if touch.moves or surface_speed(touch) != 0.0:
         return False
     if press == 0.0 or (material.kick > 0.0 and closing > material.kick_threshold):
         return False
@@ -122,7 +122,7 @@ def _bounce_from(state: State, w: int, k: int, i: int, closing: float, noise: fl
     elif state.gravity is not None or touch.bend < 0.0:
         rebound, f = _softened(ball, touch, head, material, closing, rebound, f)
     kicked = material.kick > 0.0 and closing > material.kick_threshold
-    if kicked and _is_ready(state.cooling, ball, w, touch.element, material.cooldown):
+    if kicked and _is_ready(state, w, k, touch.element, material.cooldown):
         rebound += material.kick
     else:
         kicked = False
@@ -144,7 +144,7 @@ def _softened(
     ball: Record, touch: Record, head: Record, material: Record, closing: float, rebound: float, f: float
 ) -> tuple[float, float]:
     """Rebound [m/s] and friction where the ball is pressed on the surface: absorbed, or on a curve the smallest one."""
-    press = press_of(ball, touch)
+    press = normal_load(ball, touch)
     if press == 0.0:
         return rebound, f
     rolling = touch.bend != 0.0 and closing <= 1.5 * rolling_speed(ball, touch, press, head.extent)
@@ -169,12 +169,10 @@ def _softened(
     return max(rebound, smallest), f
 
 
-@function
-def _is_ready(cooling: Table, ball: Record, w: int, element: int, cooldown: float) -> bool:
+@where("cooling", otherwise=True)
+def _is_ready(state: State, w: int, k: int, element: int, cooldown: float) -> bool:
     """Whether an element gives a kick now; if so it begins to cool down."""
-    if cooling is None:
-        return True
-    cool = cooling[w, element]
+    ball, cool = state.balls[w, k], state.cooling[w, element]
     if before(ball.hi, ball.lo, cool.hi, cool.lo):
         return False
     if cooldown > 0.0:
@@ -232,8 +230,8 @@ def _striker(ball: Record, touches: Table, w: int) -> int:
     """The touched part that moves fastest towards the ball; -1 if none does."""
     best, index = 0.0, -1
     for i in range(ball.touched):
-        if towards(touches[w, i]) > best:
-            best, index = towards(touches[w, i]), i
+        if surface_speed(touches[w, i]) > best:
+            best, index = surface_speed(touches[w, i]), i
     return index
 
 
@@ -243,7 +241,7 @@ def _squeeze_out(ball: Record, one: Record, other: Record) -> bool:
     turn = one.nx * other.ny - one.ny * other.nx
     if one.nx * other.nx + one.ny * other.ny < -OPPOSED or abs(turn) <= ALIGNED:
         return False
-    a, b = towards(one), towards(other)
+    a, b = surface_speed(one), surface_speed(other)
     ball.vx, ball.vy = (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
     return True
 
@@ -253,7 +251,10 @@ def count_bounce(state: State, w: int, k: int, touch: Record, vx0: float, vy0: f
     """Count a bounce from a touched surface, and log it."""
     state.worlds[w].bounces += 1
     count_hit(state, w, touch.element)
-    log(
-        ledger, state.worlds[w], state.balls[w, k], k, touch.element, BOUNCE,
-        touch.nx, touch.ny, vx0, vy0, touch.ux, touch.uy,
-    )  # fmt: skip
+    append_contact(ledger, state.worlds[w], state.balls[w, k], k, BOUNCE, surface_of(touch), vx0, vy0)
+
+
+@function
+def surface_of(touch: Record) -> Surface:
+    """Return what the ledger tells of a touched surface."""
+    return Surface(touch.element, touch.nx, touch.ny, touch.ux, touch.uy)

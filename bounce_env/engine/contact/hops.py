@@ -1,8 +1,15 @@
 """Small hops: how a ball goes on along what it is pressed on, where there is no closed form for a contact."""
 
-from bounce_env.engine.compile.jit import Table, function
+from bounce_env.engine.compile.jit import Table, function, where
 from bounce_env.engine.contact.bounces import count_bounce, fastest_closing
-from bounce_env.engine.contact.restitution import closing_speed, press_of, push_off, rolling_speed, slow_speed, towards
+from bounce_env.engine.contact.restitution import (
+    closing_speed,
+    normal_load,
+    push_off,
+    rolling_speed,
+    slow_speed,
+    surface_speed,
+)
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import BOUNCES_BEFORE_STANDING
 
@@ -17,7 +24,7 @@ def hop_on(state: State, w: int, k: int, at_once: bool, bounces: int, ledger: Ta
         _roll(state, w, k, ledger)
     # Where something closes on it, a ball without room is bounced from a corner at once, for ever.
     if at_once and (state.worlds[w].bounces == bounces or state.balls[w, k].confined > BOUNCES_BEFORE_STANDING):
-        _leave_part(state, state.parts, w, k, ledger)
+        _leave_part(state, w, k, ledger)
 
 
 @function
@@ -31,8 +38,8 @@ def _roll(state: State, w: int, k: int, ledger: Table) -> None:
     for i in range(ball.touched):
         touch = state.touches[w, i]
         leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
-        if touch.bend != 0.0 and not leaving and press_of(ball, touch) > best:
-            best, index = press_of(ball, touch), i
+        if touch.bend != 0.0 and not leaving and normal_load(ball, touch) > best:
+            best, index = normal_load(ball, touch), i
     if index < 0:
         return
     touch = state.touches[w, index]
@@ -56,20 +63,22 @@ def _keep_off(state: State, w: int, k: int, ledger: Table) -> None:
         count_bounce(state, w, k, touch, vx0, vy0, ledger)
 
 
-@function
-def _leave_part(state: State, parts: Table, w: int, k: int, ledger: Table) -> None:
+@where("parts")
+def _leave_part(state: State, w: int, k: int, ledger: Table) -> None:
     """Let a ball leave a part that it touches with the smallest rebound: one small hop, as along a curve.
 
     Between a part that moves and something else it may be pressed on both and close on neither. What it leaves already
     is not what it was told of.
     """
-    if parts is None:
-        return
     ball, index = state.balls[w, k], -1
     for i in range(ball.touched):
         touch = state.touches[w, i]
         leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
-        if touch.part >= 0 and not leaving and (index < 0 or towards(touch) > towards(state.touches[w, index])):
+        if (
+            touch.part >= 0
+            and not leaving
+            and (index < 0 or surface_speed(touch) > surface_speed(state.touches[w, index]))
+        ):
             index = i
     if index < 0:
         return

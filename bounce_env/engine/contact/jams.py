@@ -3,10 +3,10 @@
 A kick, or a part that has been stopped, may drive balls to and fro in a gap of next to nothing: time would stand still.
 """
 
-from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.squeeze import is_caught
 from bounce_env.engine.detect.pairs import weight_of
-from bounce_env.engine.memory.ledger import log
+from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED, FLYING, HELD, JAMMED, SETTLES
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import since
@@ -20,14 +20,12 @@ from bounce_env.engine.tolerances import (
 )
 
 
-@function
-def forget_meetings(pairs: Table, w: int) -> None:
+@where("pairs")
+def forget_meetings(state: State, w: int) -> None:
     """No two balls have hit each other yet."""
-    if pairs is None:
-        return
-    for k in range(pairs.shape[1]):
+    for k in range(state.pairs.shape[1]):
         for j in range(k):
-            pairs[w, k, j].meets = 0
+            state.pairs[w, k, j].meets = 0
 
 
 @function
@@ -87,7 +85,8 @@ def stop(state: State, w: int, k: int, j: int, nx: float, ny: float, ledger: Tab
         ball.contact, ball.support = FLYING, -1  # that contact does not begin
     vx, vy = ball.vx, ball.vy
     ball.vx, ball.vy, ball.settling = 0.0, 0.0, JAMMED
-    log(ledger, world, ball, k, state.scenes[world.scene].elements + j, BOUNCE, nx, ny, vx, vy, other.vx, other.vy)
+    surface = Surface(state.scenes[world.scene].elements + j, nx, ny, other.vx, other.vy)
+    append_contact(ledger, world, ball, k, BOUNCE, surface, vx, vy)
 
 
 @function

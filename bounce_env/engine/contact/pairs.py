@@ -2,43 +2,39 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function, routine
+from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.jams import are_stuck, count_meeting, have_no_room, note_speed, stop
 from bounce_env.engine.contact.law import capped
 from bounce_env.engine.contact.squeeze import take_opposed
 from bounce_env.engine.detect.pairs import pair_noise, plan_pairs, weight_of
 from bounce_env.engine.detect.schedule import resolve_next
-from bounce_env.engine.memory.ledger import log
-from bounce_env.engine.memory.lookup import pull
+from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED
 from bounce_env.engine.memory.state import State
+from bounce_env.engine.motion.flight import flight_of
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.tolerances import PRESSING, ROLLING, ULPS_OF_SPEED
 
 
-@routine
-def collide(state: State, pairs: Table, w: int, k: int, j: int, hi: float, lo: float, ledger: Table) -> None:
+@where("pairs", inline=False)
+def collide(state: State, w: int, k: int, j: int, hi: float, lo: float, ledger: Table) -> None:
     """Let balls `k` > `j` hit each other at the instant (hi, lo); both then bounce from what else they touch.
 
     Equal masses exchange (1 + b^2) / 2 of the speed at which they close; friction does not act. A ball that lies on
     another one leaves it with a smallest rebound, as it would a curve.
     """
-    if pairs is None:  # which compiles it away for one ball
-        return
     one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
     head = state.scenes[world.scene]
-    ax, ay = pull(state.gravity, one)
-    bx, by = pull(state.gravity, other)
-    end_flight(one, state, world.scene, ax, ay, since(hi, lo, one.hi, one.lo), hi, lo)
-    end_flight(other, state, world.scene, bx, by, since(hi, lo, other.hi, other.lo), hi, lo)
+    end_flight(state, w, k, since(hi, lo, one.hi, one.lo), hi, lo)
+    end_flight(state, w, j, since(hi, lo, other.hi, other.lo), hi, lo)
     dx, dy = one.x - other.x, one.y - other.y
     distance = math.sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
     apart = 0.5 * (2.0 * head.ball_radius - distance)
     one.x, one.y = one.x + apart * nx, one.y + apart * ny
     other.x, other.y = other.x - apart * nx, other.y - apart * ny
-    pair = pairs[w, k, j]
+    pair = state.pairs[w, k, j]
     count_meeting(world, pair, one, other, head.extent, hi, lo)
     _exchange(state, w, k, j, nx, ny, distance, have_no_room(world, pair), ledger)
     if are_stuck(world, pair, one, other):
@@ -48,22 +44,23 @@ def collide(state: State, pairs: Table, w: int, k: int, j: int, hi: float, lo: f
     for ball in (one, other):
         if ball.status != CRUSHED:
             resolve_next(ball)
-    plan_pairs(state, pairs, w, k)
-    plan_pairs(state, pairs, w, j)
+    plan_pairs(state, w, k)
+    plan_pairs(state, w, j)
 
 
 @function
 def _exchange(
-    state: State, w: int, k: int, j: int, nx: float, ny: float, distance: float, dead: bool,
-    ledger: Table,
-) -> None:  # fmt: skip
-    """The bounce of ball `k` and ball `j`, whose centres are `distance` [m] apart along (nx, ny); dead: without rebound
-    but the smallest.
+    state: State, w: int, k: int, j: int, nx: float, ny: float, distance: float, dead: bool, ledger: Table
+) -> None:
+    """Bounce ball `k` and ball `j` off each other, whose centres are `distance` [m] apart along (nx, ny).
+
+    dead: without rebound but the smallest.
     """
     one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
     head = state.scenes[world.scene]
     closing = -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny)
-    noise = max(pair_noise(one, other, one.vx, one.vy, other.vx, other.vy, head), ULPS_OF_SPEED * world.meet_speed)
+    noise = pair_noise(one, other, flight_of(state, one), flight_of(state, other), head)
+    noise = max(noise, ULPS_OF_SPEED * world.meet_speed)
     least = _least_rebound(one, other, nx, ny, distance, head)
     if least == 0.0 and closing <= 0.0:
         return
@@ -81,9 +78,8 @@ def _exchange(
     _cap(one, other, nx, ny, head.max_speed, world)
     _cap(other, one, -nx, -ny, head.max_speed, world)
     world.bounces += 1
-    elements = head.elements
-    log(ledger, world, one, k, elements + j, BOUNCE, nx, ny, vx, vy, ux, uy)
-    log(ledger, world, other, j, elements + k, BOUNCE, -nx, -ny, ux, uy, vx, vy)
+    append_contact(ledger, world, one, k, BOUNCE, Surface(head.elements + j, nx, ny, ux, uy), vx, vy)
+    append_contact(ledger, world, other, j, BOUNCE, Surface(head.elements + k, -nx, -ny, vx, vy), ux, uy)
 
 
 @function

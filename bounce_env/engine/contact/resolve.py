@@ -7,15 +7,15 @@ anchors/numerics.md, check 2).
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function
-from bounce_env.engine.contact.bounces import bounce_from_all, count_bounce, take_soft, take_vague
+from bounce_env.engine.contact.bounces import bounce_from_all, count_bounce, surface_of, take_soft, take_vague
 from bounce_env.engine.contact.hops import hop_on
 from bounce_env.engine.contact.resting import bear, find_contact, is_slow
-from bounce_env.engine.contact.restitution import closing_speed, is_soft, press_of, towards
-from bounce_env.engine.contact.sides import face_crossings
+from bounce_env.engine.contact.restitution import closing_speed, is_soft, normal_load, surface_speed
+from bounce_env.engine.contact.sides import update_crossing_sides
 from bounce_env.engine.contact.touching import collect_touches, keep_outside
 from bounce_env.engine.detect.pairs import plan_pairs
 from bounce_env.engine.detect.schedule import plan_rest, plan_standing
-from bounce_env.engine.memory.ledger import log
+from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import (
     CONTACT_BEGINS,
     CONTACT_ENDS,
@@ -73,7 +73,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     if duration >= 0.0:
         ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
     plan_rest(state, w, k)
-    plan_pairs(state, state.pairs, w, k)
+    plan_pairs(state, w, k)
 
 
 @function
@@ -83,7 +83,7 @@ def _is_stuck(ball: Record, touches: Table, w: int, extent: float) -> bool:
         return False
     seconds = _standing_time(ball, extent)
     for i in range(ball.touched):
-        closing = towards(touches[w, i])
+        closing = surface_speed(touches[w, i])
         if closing > 0.0 and not closing * seconds <= ball.slack:
             return False
     return True
@@ -143,7 +143,7 @@ def _bounce_and_go(state: State, w: int, k: int, contact: int, support: int, at_
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
     if ball.contact == FLYING:
         hop_on(state, w, k, at_once, bounces, ledger)
-    face_crossings(state, w, k)
+    update_crossing_sides(state, w, k)
     vx, vy, duration = ball.vx, ball.vy, -1.0
     if state.gravity is not None and single >= 0 and ball.contact == FLYING:
         duration = _settle(state, w, k, single)
@@ -176,10 +176,7 @@ def _change_contact(
     if i >= 0:
         touch = state.touches[w, i]
         ball.nx, ball.ny = touch.nx, touch.ny
-        log(
-            ledger, state.worlds[w], ball, k, touch.element, CONTACT_BEGINS,
-            touch.nx, touch.ny, vx, vy, touch.ux, touch.uy,
-        )  # fmt: skip
+        append_contact(ledger, state.worlds[w], ball, k, CONTACT_BEGINS, surface_of(touch), vx, vy)
     return i
 
 
@@ -199,7 +196,7 @@ def _settle(state: State, w: int, k: int, single: int) -> float:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head, touch = state.scenes[scene], state.touches[w, single]
     material = state.elements[scene, touch.element]
-    press, rebound, b, f = press_of(ball, touch), -closing_speed(ball, touch), material.b, material.f
+    press, rebound, b, f = normal_load(ball, touch), -closing_speed(ball, touch), material.b, material.f
     if touch.bend != 0.0 or touch.moves or head.rest_speed > 0.0 or not 0.0 < b < 1.0:
         return -1.0
     if press == 0.0 or not is_soft(rebound, press, head.extent):
@@ -228,5 +225,5 @@ def _log_end(state: State, w: int, k: int, support: int, vx: float, vy: float, l
         if state.touches[w, i].element == support:
             ux, uy = state.touches[w, i].ux, state.touches[w, i].uy
     ball.vx, ball.vy = vx, vy
-    log(ledger, state.worlds[w], ball, k, support, CONTACT_ENDS, ball.nx, ball.ny, vx, vy, ux, uy)
+    append_contact(ledger, state.worlds[w], ball, k, CONTACT_ENDS, Surface(support, ball.nx, ball.ny, ux, uy), vx, vy)
     ball.vx, ball.vy = new_vx, new_vy

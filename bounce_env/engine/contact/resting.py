@@ -7,7 +7,7 @@ closed form under the tangential part of its acceleration; on curves it may rest
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function
-from bounce_env.engine.contact.restitution import along_speed, closing_speed, press_of, slow_speed, stands
+from bounce_env.engine.contact.restitution import along_speed, closing_speed, is_standing, normal_load, slow_speed
 from bounce_env.engine.memory.records import HELD, RIDING
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import ALIGNED, BALANCE, CORNER, PRESSING, SWING, ULPS_OF_LENGTH, ULPS_OF_SPEED
@@ -30,7 +30,7 @@ def find_contact(state: State, w: int, k: int) -> int:
     head = state.scenes[scene]
     for i in range(ball.touched):
         touch = state.touches[w, i]
-        if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or press_of(ball, touch) == 0.0:
+        if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or normal_load(ball, touch) == 0.0:
             continue
         if not _lets_hold(ball, state.touches, w, i):
             continue
@@ -104,14 +104,14 @@ def _carries_alone(ball: Record, touch: Record) -> bool:
     """Whether a surface is level beneath the ball, which does not move away: its bounces there are summed instead."""
     level = abs(ball.gx * touch.ny - ball.gy * touch.nx) <= ALIGNED * (abs(ball.gx) + abs(ball.gy))
     beneath = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
-    return level and beneath and stands(touch) and closing_speed(ball, touch) >= -slow_speed(ball, touch)
+    return level and beneath and is_standing(touch) and closing_speed(ball, touch) >= -slow_speed(ball, touch)
 
 
 @function
 def _shares(ball: Record, one: Record, other: Record) -> tuple[float, float]:
     """The forces (per mass, m/s^2) along two normals that together hold the ball; negative where there are none."""
     turn = one.nx * other.ny - one.ny * other.nx
-    if not stands(one) or not stands(other) or abs(turn) <= ALIGNED:
+    if not is_standing(one) or not is_standing(other) or abs(turn) <= ALIGNED:
         return -1.0, -1.0
     noise = ALIGNED * (abs(ball.gx) + abs(ball.gy))
     of_one = (ball.gy * other.nx - ball.gx * other.ny) / turn

@@ -8,39 +8,39 @@ from bounce_env.engine.tolerances import PRESSING, ROLLING, ULPS_OF_LENGTH, ULPS
 
 @function
 def slow_speed(ball: Record, touch: Record) -> float:
-    """Closing slower than this [m/s] is no hit: the rounding of the ball's velocity, and of a curve's normal."""
+    """Return the speed [m/s] below which closing is no hit: the rounding of velocities, and of a curve's normal."""
     speed = abs(ball.vx) + abs(ball.vy) + (abs(touch.ux) + abs(touch.uy))
     return (ULPS_OF_SPEED + ball.slack * abs(touch.bend)) * speed
 
 
 @function
 def closing_speed(ball: Record, touch: Record) -> float:
-    """How fast [m/s] the ball and a surface that it touches come closer."""
+    """Return how fast [m/s] the ball and a surface that it touches come closer."""
     return -((ball.vx - touch.ux) * touch.nx + (ball.vy - touch.uy) * touch.ny)
 
 
 @function
 def along_speed(ball: Record, touch: Record) -> float:
-    """Speed [m/s] of the ball along a surface that it touches, counter-clockwise about it positive."""
+    """Return the speed [m/s] of the ball along a surface that it touches, counter-clockwise about it positive."""
     return (ball.vy - touch.uy) * touch.nx - (ball.vx - touch.ux) * touch.ny
 
 
 @function
-def towards(touch: Record) -> float:
-    """How fast [m/s] a touched surface itself moves towards the ball; 0 where it stands, or slides along it."""
+def surface_speed(touch: Record) -> float:
+    """Return how fast [m/s] a touched surface itself moves towards the ball; 0 where it stands or slides along it."""
     speed = touch.ux * touch.nx + touch.uy * touch.ny
     return speed if abs(speed) > ULPS_OF_SPEED * (abs(touch.ux) + abs(touch.uy)) else 0.0
 
 
 @function
-def stands(touch: Record) -> bool:
-    """Whether a touched surface does not move now."""
+def is_standing(touch: Record) -> bool:
+    """Return whether a touched surface does not move now."""
     return not touch.moves and touch.ux == 0.0 and touch.uy == 0.0
 
 
 @function
-def press_of(ball: Record, touch: Record) -> float:
-    """Acceleration [m/s^2] with which the ball is pressed on a surface that it moves along; 0 where it is not.
+def normal_load(ball: Record, touch: Record) -> float:
+    """Return the acceleration [m/s^2] that presses the ball on a surface that it moves along; 0 where it does not.
 
     Gravity's share, and on a curve what it takes to follow it.
     """
@@ -53,19 +53,19 @@ def press_of(ball: Record, touch: Record) -> float:
 
 @function
 def is_soft(closing: float, press: float, extent: float) -> bool:
-    """Whether a hop at this speed [m/s] does not rise above the tolerance of lengths."""
+    """Return whether a hop at this speed [m/s] does not rise above the tolerance of lengths."""
     return closing <= soft_speed(press, extent)
 
 
 @function
 def soft_speed(press: float, extent: float) -> float:
-    """Speed [m/s] of a hop that rises by the tolerance of lengths."""
+    """Return the speed [m/s] of a hop that rises by the tolerance of lengths."""
     return math.sqrt(2.0 * press * (ULPS_OF_LENGTH * extent))
 
 
 @function
 def rolling_speed(ball: Record, touch: Record, press: float, extent: float) -> float:
-    """Speed [m/s] of the small hops in which a ball rolls on a curved surface that it is pressed on.
+    """Return the speed [m/s] of the small hops in which a ball rolls on a curved surface that it is pressed on.
 
     A share of the speed at which it would let go of the curve; for a slow ball less, so that one in a hollow between
     several surfaces comes down to rest.

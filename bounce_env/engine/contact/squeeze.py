@@ -1,7 +1,7 @@
 """A ball between a closing part and what opposes it: when it is caught there, and when that has crushed it."""
 
 from bounce_env.engine.compile.jit import Record, function
-from bounce_env.engine.contact.restitution import towards
+from bounce_env.engine.contact.restitution import surface_speed
 from bounce_env.engine.tolerances import CLEARANCE, OPPOSED, SQUEEZES
 
 
@@ -12,7 +12,7 @@ def is_crushed(ball: Record, touch: Record, head: Record) -> bool:
     It is when, not having come further than a clearance from where the part first struck it, it has gone to and fro so
     often, and is struck again.
     """
-    strikes = touch.part >= 0 and towards(touch) > 0.0
+    strikes = touch.part >= 0 and surface_speed(touch) > 0.0
     if take_opposed(ball, head, touch.nx, touch.ny):
         return False
     caught = is_caught(ball, head)

@@ -2,96 +2,88 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function
-from bounce_env.engine.memory.lookup import is_dragged
+from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.dragged_wall import line_at
 from bounce_env.engine.motion.fields import gravity_of
 from bounce_env.engine.motion.instant import since
+from bounce_env.engine.motion.parts import is_dragged, moving_part
 from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 
+Vector = tuple[float, float]
+
 
 @function
-def take_sides(state: State, w: int, k: int) -> None:
-    """The ball's sides at its start: on a line itself the one it moves to, at rest the one gravity presses it from."""
+def set_initial_sides(state: State, w: int, k: int) -> None:
+    """Set the ball's sides: on a line itself the one it moves to, at rest the one gravity presses it from."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = state.scenes[scene]
-    gx, gy = gravity_of(state.gravity, scene)
-    _side_with_lines(ball, state.faces, head.faces, state.face_sides, w, k, scene, gx, gy)
-    _side_with_lines(ball, state.sensors, head.sensors, state.sensor_sides, w, k, scene, gx, gy)
-    _side_with_lines(ball, state.edges, head.fields, state.edge_sides, w, k, scene, gx, gy)
-    _side_with_arcs(ball, state.arcs, head.arcs, state.arc_sides, w, k, scene, gx, gy)
-    _side_with_parts(ball, state.parts, head.parts, state.motions, state.ends, state.part_sides, w, k, scene, gx, gy)
-    _side_with_rings(ball, state.rings, head.rings, state.ring_sides, w, k, scene, gx, gy)
+    head, gravity = state.scenes[scene], gravity_of(state, scene)
+    _set_line_sides(ball, gravity, state.faces, state.face_sides, head.faces, w, k, scene)
+    _set_line_sides(ball, gravity, state.sensors, state.sensor_sides, head.sensors, w, k, scene)
+    _set_line_sides(ball, gravity, state.edges, state.edge_sides, head.fields, w, k, scene)
+    _set_arc_sides(state, w, k)
+    _set_part_sides(state, w, k)
+    _set_ring_sides(state, w, k)
 
 
 @function
-def _side_with_lines(
-    ball: Record, lines: Table, count: int, sides: Table, w: int, k: int, scene: int, gx: float, gy: float
+def _set_line_sides(
+    ball: Record, gravity: Vector, lines: Table, sides: Table, count: int, w: int, k: int, scene: int
 ) -> None:
+    """One loop for walls, sensors and borders of fields: `lines` and `sides` are those of one of them."""
     if lines is None or sides is None:
         return
     for i in range(count):
         line = lines[scene, i]
         nx, ny = -line.uy, line.ux
-        lean = (ball.x - line.x) * nx + (ball.y - line.y) * ny
-        if abs(lean) <= ball.slack:
-            lean = _lean(ball, nx, ny, gx, gy)
-        sides[w, k, i] = 1 if lean >= 0.0 else -1
+        height = (ball.x - line.x) * nx + (ball.y - line.y) * ny
+        sides[w, k, i] = _side(ball, gravity, height, nx, ny)
+
+
+@where("part_sides")
+def _set_part_sides(state: State, w: int, k: int) -> None:
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    for m in range(state.scenes[scene].parts):
+        part = moving_part(state, w, m)
+        state.part_sides[w, k, m] = 0
+        if is_dragged(part):
+            x, y, ux, uy, _ = line_at(part.ends, since(ball.hi, ball.lo, part.motion.hi, part.motion.lo))
+            height = (ball.y - y) * ux - (ball.x - x) * uy
+            state.part_sides[w, k, m] = _side(ball, gravity_of(state, scene), height, -uy, ux)
+
+
+@where("arc_sides")
+def _set_arc_sides(state: State, w: int, k: int) -> None:
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    for i in range(state.scenes[scene].arcs):
+        arc = state.arcs[scene, i]
+        state.arc_sides[w, k, i] = _side_of_circle(ball, gravity_of(state, scene), arc.x, arc.y, arc.outer)
+
+
+@where("rings")
+def _set_ring_sides(state: State, w: int, k: int) -> None:
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    for i in range(state.scenes[scene].rings):
+        ring = state.rings[scene, i]
+        state.ring_sides[w, k, i] = _side_of_circle(ball, gravity_of(state, scene), ring.x, ring.y, ring.radius)
 
 
 @function
-def _side_with_parts(
-    ball: Record, parts: Table, count: int, motions: Table, all_ends: Table, sides: Table, w: int, k: int, scene: int,
-    gx: float, gy: float,
-) -> None:  # fmt: skip
-    if parts is None or motions is None or all_ends is None or sides is None:
-        return
-    for m in range(count):
-        motion, ends = motions[w, m], all_ends[w, m]
-        sides[w, k, m] = 0
-        if is_dragged(ends, parts[scene, m]):
-            x, y, ux, uy, _ = line_at(ends, since(ball.hi, ball.lo, motion.hi, motion.lo))
-            lean = (ball.y - y) * ux - (ball.x - x) * uy
-            if abs(lean) <= ball.slack:
-                lean = _lean(ball, -uy, ux, gx, gy)
-            sides[w, k, m] = 1 if lean >= 0.0 else -1
-
-
-@function
-def _side_with_arcs(
-    ball: Record, arcs: Table, count: int, sides: Table, w: int, k: int, scene: int, gx: float, gy: float
-) -> None:
-    if arcs is None or sides is None:
-        return
-    for i in range(count):
-        arc = arcs[scene, i]
-        sides[w, k, i] = _side_of_circle(ball, arc.x, arc.y, arc.outer, gx, gy)
-
-
-@function
-def _side_with_rings(
-    ball: Record, rings: Table, count: int, sides: Table, w: int, k: int, scene: int, gx: float, gy: float
-) -> None:
-    if rings is None or sides is None:
-        return
-    for i in range(count):
-        ring = rings[scene, i]
-        sides[w, k, i] = _side_of_circle(ball, ring.x, ring.y, ring.radius, gx, gy)
-
-
-@function
-def _side_of_circle(ball: Record, x: float, y: float, radius: float, gx: float, gy: float) -> int:
+def _side_of_circle(ball: Record, gravity: Vector, x: float, y: float, radius: float) -> int:
     dx, dy = ball.x - x, ball.y - y
     distance = math.sqrt(dx * dx + dy * dy)
-    lean = distance - radius
-    if abs(lean) <= ball.slack:
-        lean = _lean(ball, dx / distance, dy / distance, gx, gy)
-    return 1 if lean >= 0.0 else -1
+    return _side(ball, gravity, distance - radius, dx / distance, dy / distance)
 
 
 @function
-def _lean(ball: Record, nx: float, ny: float, gx: float, gy: float) -> float:
+def _side(ball: Record, gravity: Vector, height: float, nx: float, ny: float) -> int:
+    if abs(height) <= ball.slack:
+        height = _lean(ball, gravity, nx, ny)
+    return 1 if height >= 0.0 else -1
+
+
+@function
+def _lean(ball: Record, gravity: Vector, nx: float, ny: float) -> float:
     """To which side of a line that it is on the ball moves, or else is pulled from; 0 where it does neither.
 
     Less than rounding is nothing: a ball sent along a turned wall is on the left of it, as along any other.
@@ -99,5 +91,6 @@ def _lean(ball: Record, nx: float, ny: float, gx: float, gy: float) -> float:
     lean = ball.vx * nx + ball.vy * ny
     if abs(lean) > ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy)):
         return lean
+    gx, gy = gravity
     press = -(gx * nx + gy * ny)
     return press if abs(press) > PRESSING * (abs(gx) + abs(gy)) else 0.0

@@ -9,9 +9,8 @@ import math
 
 from bounce_env.engine.compile.jit import Record, function, routine
 from bounce_env.engine.detect.parts import plan_meetings, plan_zones, way_off_part
-from bounce_env.engine.detect.sensors import next_crossing
+from bounce_env.engine.detect.sensors import Crossing, next_crossing
 from bounce_env.engine.detect.surfaces import first_arc, first_circle, first_end, first_face, wall_normal
-from bounce_env.engine.memory.lookup import pull
 from bounce_env.engine.memory.records import (
     NEXT_HIT,
     NEXT_PART,
@@ -26,69 +25,55 @@ from bounce_env.engine.memory.records import (
     RIDING,
 )
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import time_in_scene
+from bounce_env.engine.motion.flight import flight_of, time_in_scene
 from bounce_env.engine.motion.instant import before, later
 
 
 @routine
 def plan_parts(state: State, w: int, k: int) -> None:
     """Search the parts in whose zone a ball is, and set its next event."""
-    ball, scene = state.balls[w, k], state.worlds[w].scene
-    gx, gy = pull(state.gravity, ball)
-    plan_meetings(ball, state, state.motions, state.parts, state.zones, w, k, scene, gx, gy)
+    ball = state.balls[w, k]
+    plan_meetings(state, w, k, flight_of(state, ball))
     schedule(ball)
 
 
 @function
 def plan_crossing(state: State, w: int, k: int, after: float, kind: int, index: int) -> None:
     """Search the next crossing after (after, kind, index) in the present flight, and set the ball's next event."""
+    _plan_crossing(state, w, k, Crossing(after, kind, index))
+    schedule(state.balls[w, k])
+
+
+@function
+def _plan_crossing(state: State, w: int, k: int, last: Crossing) -> None:
     ball = state.balls[w, k]
-    gx, gy = pull(state.gravity, ball)
-    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(state, w, k, gx, gy, after, kind, index)
-    schedule(ball)
+    following = next_crossing(state, w, k, flight_of(state, ball), last)
+    ball.sensor_after, ball.sensor_kind, ball.sensor_index = following.after, following.kind, following.row
 
 
 @function
 def plan_standing(state: State, w: int, k: int) -> None:
     """Search everything that stands: what ends the flight that begins now, and when."""
-    ball, scene = state.balls[w, k], state.worlds[w].scene
-    head = state.scenes[scene]
-    gx, gy = pull(state.gravity, ball)
-    nx, ny = wall_normal(state, state.faces, w, k, ball.contact)
+    ball = state.balls[w, k]
+    flight = flight_of(state, ball)
+    nx, ny = wall_normal(state, w, k, ball.contact)
     if ball.contact == RIDING:
         nx, ny = ball.nx, ball.ny
-    horizon = time_in_scene(head.extent, ball.x, ball.y, ball.vx, ball.vy, gx, gy)
-    after, face = first_face(
-        ball,
-        state.faces,
-        state.gates,
-        head.faces,
-        state.face_sides,
-        state.disabled,
-        w,
-        k,
-        scene,
-        gx,
-        gy,
-        nx,
-        ny,
-        horizon,
-    )
+    after = time_in_scene(flight, state.scenes[state.worlds[w].scene].extent)
+    after, face = first_face(state, w, k, flight, nx, ny, after)
     ball.hit_kind, ball.hit_index = ON_FACE, face
-    after, circle = first_circle(ball, state.circles, head.circles, state.disabled, w, scene, gx, gy, nx, ny, after)
+    after, circle = first_circle(state, w, k, flight, nx, ny, after)
     if circle >= 0:
         ball.hit_kind, ball.hit_index = ON_CIRCLE, circle
-    after, arc = first_arc(
-        ball, state.arcs, head.arcs, state.arc_sides, state.disabled, w, k, scene, gx, gy, nx, ny, after
-    )
+    after, arc = first_arc(state, w, k, flight, nx, ny, after)
     if arc >= 0:
         ball.hit_kind, ball.hit_index = ON_ARC, arc
-    after, end = first_end(ball, state.faces, head.faces, state.face_sides, state.disabled, w, scene, gx, gy, after)
+    after, end = first_end(state, w, k, flight, after)
     if end >= 0:
         ball.hit_kind, ball.hit_index = OFF_END, end
     met = face >= 0 or circle >= 0 or arc >= 0 or end >= 0
     if ball.contact == RIDING:
-        off = way_off_part(ball, state.motions, state.parts, state.turns, state.ends, w, scene, gx, gy)
+        off = way_off_part(state, w, k, flight)
         if off < after:
             after, met = off, True
             ball.hit_kind, ball.hit_index = OFF_PART, ball.rides
@@ -99,10 +84,8 @@ def plan_standing(state: State, w: int, k: int) -> None:
 @function
 def plan_rest(state: State, w: int, k: int) -> None:
     """Search what does not end the flight, or may move: sensors, zones, parts; and set the ball's next event."""
-    ball, scene = state.balls[w, k], state.worlds[w].scene
-    gx, gy = pull(state.gravity, ball)
-    ball.sensor_after, ball.sensor_kind, ball.sensor_index = next_crossing(state, w, k, gx, gy, -1.0, -1, -1)
-    plan_zones(ball, state, state.zones, state.parts, w, k, scene, gx, gy, 0.0)
+    _plan_crossing(state, w, k, Crossing(-1.0, -1, -1))
+    plan_zones(state, w, k, flight_of(state, state.balls[w, k]), 0.0)
     plan_parts(state, w, k)
 
 

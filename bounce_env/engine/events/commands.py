@@ -1,58 +1,70 @@
-"""Commands: from now until the next one a part is to move so. The command that it has changes no bit."""
+"""Commands: from now until the next one a part is to move so. Repeating the current command changes no bit."""
 
-from bounce_env.engine.compile.jit import Record, Table, function, routine
-from bounce_env.engine.events.crushing import mind_crushed
-from bounce_env.engine.events.flights import slow_down
+from bounce_env.engine.compile.jit import routine, where
+from bounce_env.engine.events.crushing import hold_or_free_crushed
+from bounce_env.engine.events.flights import apply_drag
 from bounce_env.engine.events.part_stops import end_rides, replan_part, resume_part, set_off
 from bounce_env.engine.memory.state import State
 
 
-@function
-def command(state: State, motions: Table, parts: Table, w: int, m: int, velocity: float) -> None:
+@where("parts")
+def command(state: State, w: int, m: int, velocity: float) -> None:
     """Let part `m` of world `w` move at `velocity` [m/s or rad/s]."""
-    if motions is None or parts is None:
-        return
-    slow_down(state, state.drags, w)
-    if velocity != motions[w, m].command:
-        motions[w, m].command = velocity
-        _move_otherwise(state, motions, parts, w, m)
+    apply_drag(state, w)
+    if velocity != state.motions[w, m].command:
+        state.motions[w, m].command = velocity
+        _move_otherwise(state, w, m)
 
 
-@function
-def command_ends(state: State, all_ends: Table, w: int, m: int, vx0: float, vy0: float, vx1: float, vy1: float) -> None:
+@where("ends")
+def command_ends(state: State, w: int, m: int, start: tuple[float, float], end: tuple[float, float]) -> None:
     """Let the ends of the dragged wall `m` move at these velocities [m/s], as far as they may."""
-    if all_ends is None:
-        return
-    ends = all_ends[w, m]
-    slow_down(state, state.drags, w)
+    ends, (vx0, vy0), (vx1, vy1) = state.ends[w, m], start, end
+    apply_drag(state, w)
     if vx0 != ends.cx0 or vy0 != ends.cy0 or vx1 != ends.cx1 or vy1 != ends.cy1:
         ends.cx0, ends.cy0, ends.cx1, ends.cy1 = vx0, vy0, vx1, vy1
-        _move_otherwise(state, state.motions, state.parts, w, m)
+        _move_otherwise(state, w, m)
 
 
 @routine
-def _move_otherwise(state: State, motions: Table, parts: Table, w: int, m: int) -> None:
+def _move_otherwise(state: State, w: int, m: int) -> None:
     """Let part `m` move as it has now been commanded to."""
     end_rides(state, w, m)
-    resume_part(state, motions, parts, w, m)
-    mind_crushed(state, motions, parts, w, m)
-    replan_part(state, state.zones, w, m)
+    resume_part(state, w, m)
+    hold_or_free_crushed(state, w, m)
+    replan_part(state, w, m)
 
 
-@function
-def command_unwatched(
-    world: Record, motions: Table, parts: Table, zones: Table, drags: Table, w: int, m: int, velocity: float
-) -> bool:
-    """As `command`, where no ball is concerned; otherwise it does nothing and returns False."""
-    if motions is None or parts is None or zones is None:
-        return True
-    if drags is not None:
+@where("parts", otherwise=True)
+def command_unwatched(state: State, w: int, m: int, velocity: float) -> bool:
+    """Command a part that no ball is near, as `command` does; otherwise return False with nothing done."""
+    if state.drags is not None:
         return False
-    motion = motions[w, m]
+    motion, world = state.motions[w, m], state.worlds[w]
     if velocity == motion.command:
         return True
-    for k in range(zones.shape[1]):
-        if zones[w, k, m].inside:
+    for k in range(state.zones.shape[1]):
+        if state.zones[w, k, m].inside:
             return False
-    set_off(motion, parts[world.scene, m], world, velocity)
+    set_off(motion, state.parts[world.scene, m], world, velocity)
     return True
+
+
+@where("parts", otherwise=0.0)
+def full_speed(state: State, w: int, m: int) -> float:
+    """Return the greatest speed [m/s or rad/s] of part `m`, forwards."""
+    return state.parts[state.worlds[w].scene, m].up_speed
+
+
+@where("parts")
+def command_flipper(state: State, w: int, m: int, pressed: bool) -> None:
+    """Let flipper `m` turn to its active angle at full speed while it is pressed, and back while it is not."""
+    part = state.parts[state.worlds[w].scene, m]
+    command(state, w, m, part.up_speed if pressed else -part.down_speed)
+
+
+@where("guides", otherwise=(0.0, 0.0, 0.0, 0.0))
+def reach_box(state: State, w: int, m: int) -> tuple[float, float, float, float]:
+    """Return the box in which the ends of dragged wall `m` stay: x_min, y_min, x_max, y_max [m]."""
+    guide = state.guides[state.worlds[w].scene, m]
+    return guide.x0, guide.y0, guide.x1, guide.y1

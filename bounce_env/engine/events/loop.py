@@ -6,21 +6,21 @@ these before parts, and each in its order.
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.arrival import end_flight, snap
 from bounce_env.engine.contact.jams import forget_meetings
 from bounce_env.engine.contact.pairs import collide
 from bounce_env.engine.contact.resolve import resolve
-from bounce_env.engine.contact.sides import arrive
+from bounce_env.engine.contact.sides import update_sides
 from bounce_env.engine.detect.pairs import first_pair
 from bounce_env.engine.detect.parts import plan_zones
 from bounce_env.engine.detect.schedule import plan_parts
 from bounce_env.engine.events.crossings import cross
 from bounce_env.engine.events.crushing import crush, meet_crushed
-from bounce_env.engine.events.part_stops import part_stops, rest_parts
-from bounce_env.engine.memory.lookup import pull
+from bounce_env.engine.events.part_stops import reset_parts, stop_part
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, FLYING, NEXT_HIT, NEXT_SENSOR, NEXT_ZONE, OK, RESOLVE
 from bounce_env.engine.memory.state import State
+from bounce_env.engine.motion.flight import flight_of
 from bounce_env.engine.motion.instant import before, since
 from bounce_env.engine.motion.parts import offset_at, stop_instant
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
@@ -58,10 +58,10 @@ def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int,
         if what == OF_BALL:
             world.events += _ball_event(state, w, i, ledger)
         elif what == OF_PAIR:
-            collide(state, state.pairs, w, i, j, hi, lo, ledger)
+            collide(state, w, i, j, hi, lo, ledger)
             world.events += 1
         else:
-            part_stops(state, state.motions, state.parts, world, w, i, ledger)
+            stop_part(state, w, i, ledger)
             world.events += 1
 
 
@@ -72,58 +72,55 @@ def _next(state: State, w: int, until_hi: float, until_lo: float) -> tuple[float
         b = state.balls[w, k]
         if not before(until_hi, until_lo, b.next_hi, b.next_lo) and before(b.next_hi, b.next_lo, hi, lo):
             hi, lo, what, i = b.next_hi, b.next_lo, OF_BALL, k
-    pair_hi, pair_lo, one, other = first_pair(state.pairs, w, until_hi, until_lo)
+    pair_hi, pair_lo, one, other = first_pair(state, w, until_hi, until_lo)
     if before(pair_hi, pair_lo, hi, lo):
         hi, lo, what, i, j = pair_hi, pair_lo, OF_PAIR, one, other
-    scene = state.worlds[w].scene
-    m, stop_hi, stop_lo = _first_stop(state.motions, state.parts, w, scene, until_hi, until_lo)
+    m, stop_hi, stop_lo = _first_stop(state, w, until_hi, until_lo)
     if before(stop_hi, stop_lo, hi, lo):
         hi, lo, what, i = stop_hi, stop_lo, OF_PART, m
     return hi, lo, what, i, j
 
 
-@function
-def _first_stop(
-    motions: Table, parts: Table, w: int, scene: int, until_hi: float, until_lo: float
-) -> tuple[int, float, float]:
+@where("parts", otherwise=(-1, math.inf, 0.0))
+def _first_stop(state: State, w: int, until_hi: float, until_lo: float) -> tuple[int, float, float]:
+    """The part that first comes to a stop up to an instant, and when: (part, hi, lo), part -1 if none does."""
+    scene = state.worlds[w].scene
     hi, lo, first = math.inf, 0.0, -1
-    if motions is None or parts is None:
-        return first, hi, lo
-    for m in range(motions.shape[1]):
-        motion, part = motions[w, m], parts[scene, m]
-        if _moves_until(motion, part, until_hi, until_lo):
+    for m in range(state.motions.shape[1]):
+        motion, shape = state.motions[w, m], state.parts[scene, m]
+        if _moves_until(motion, shape, until_hi, until_lo):
             continue
-        stop_hi, stop_lo = stop_instant(motion, part)
+        stop_hi, stop_lo = stop_instant(motion, shape)
         if not before(until_hi, until_lo, stop_hi, stop_lo) and before(stop_hi, stop_lo, hi, lo):
             hi, lo, first = stop_hi, stop_lo, m
     return first, hi, lo
 
 
 @function
-def _moves_until(motion: Record, part: Record, hi: float, lo: float) -> bool:
+def _moves_until(motion: Record, shape: Record, hi: float, lo: float) -> bool:
     """Whether the part surely comes to no stop up to an instant: most are told so without a division.
 
     The margin covers the rounding of the two ways; within it the stop's instant decides. Asked of both stops alike,
     since which one lies ahead is a coin's toss to the processor.
     """
-    margin = UNSURE * part.span
-    return motion.velocity == 0.0 or margin < offset_at(motion, hi, lo) < part.span - margin
+    margin = UNSURE * shape.span
+    return motion.velocity == 0.0 or margin < offset_at(motion, hi, lo) < shape.span - margin
 
 
 @function
-def is_calm(
-    balls: Table, pairs: Table, motions: Table, parts: Table, w: int, scene: int, until_hi: float, until_lo: float
-) -> bool:
-    """Whether surely nothing happens in world `w` up to and including an instant."""
-    for k in range(balls.shape[1]):
-        if not before(until_hi, until_lo, balls[w, k].next_hi, balls[w, k].next_lo):
+def is_calm(state: State, w: int, until_hi: float, until_lo: float) -> bool:
+    """Return whether surely nothing happens in world `w` up to and including an instant."""
+    for k in range(state.balls.shape[1]):
+        if not before(until_hi, until_lo, state.balls[w, k].next_hi, state.balls[w, k].next_lo):
             return False
-    if pairs is not None and first_pair(pairs, w, until_hi, until_lo)[2] >= 0:
-        return False
-    if motions is not None and parts is not None:
-        for m in range(motions.shape[1]):
-            if not _moves_until(motions[w, m], parts[scene, m], until_hi, until_lo):
-                return False
+    return first_pair(state, w, until_hi, until_lo)[2] < 0 and _all_move_until(state, w, until_hi, until_lo)
+
+
+@where("parts", otherwise=True)
+def _all_move_until(state: State, w: int, until_hi: float, until_lo: float) -> bool:
+    for m in range(state.motions.shape[1]):
+        if not _moves_until(state.motions[w, m], state.parts[state.worlds[w].scene, m], until_hi, until_lo):
+            return False
     return True
 
 
@@ -139,16 +136,14 @@ def _ball_event(state: State, w: int, k: int, ledger: Table) -> int:
     """Process the ball's next event; returns how many events it counts for in the budget."""
     ball = state.balls[w, k]
     if ball.next_kind == NEXT_ZONE:
-        scene = state.worlds[w].scene
-        gx, gy = pull(state.gravity, ball)
-        plan_zones(ball, state, state.zones, state.parts, w, k, scene, gx, gy, ball.zone_after)
+        plan_zones(state, w, k, flight_of(state, ball), ball.zone_after)
         plan_parts(state, w, k)
         return 0
     if ball.next_kind == NEXT_SENSOR:
         cross(state, w, k, ledger)
         return 1
     if ball.status == CRUSHED:
-        meet_crushed(state, state.motions, state.parts, w, k, ball.part_index, ledger)
+        meet_crushed(state, w, k, ball.part_index, ledger)
         return 1
     planning = ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE
     bounces = state.worlds[w].bounces
@@ -159,20 +154,19 @@ def _ball_event(state: State, w: int, k: int, ledger: Table) -> int:
 
 @function
 def _hit(state: State, w: int, k: int, ledger: Table) -> None:
-    ball, scene = state.balls[w, k], state.worlds[w].scene
-    gx, gy = pull(state.gravity, ball)
+    ball = state.balls[w, k]
     # A kept hit is a duration from the flight's start, so that its own rounding is all there is.
     t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
-    x0, y0, vx0, vy0 = ball.x, ball.y, ball.vx, ball.vy
-    end_flight(ball, state, scene, gx, gy, t, ball.next_hi, ball.next_lo)
+    start = flight_of(state, ball)
+    end_flight(state, w, k, t, ball.next_hi, ball.next_lo)
     snap(state, w, k)
-    arrive(state, w, k, x0, y0, vx0, vy0, t)
+    update_sides(state, w, k, start, t)
     at_once = _is_over_at_once(ball, t) and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
     bounces = state.worlds[w].bounces
     resolve(state, w, k, at_once, ledger)
     ball.confined += state.worlds[w].bounces > bounces
     if ball.status == CRUSHED:
-        crush(state, state.motions, state.parts, w, k, ledger)
+        crush(state, w, k, ledger)
 
 
 @function
@@ -189,26 +183,23 @@ def restart(state: State, w: int) -> None:
     world.time_hi, world.time_lo = 0.0, 0.0
     world.bounces, world.speed_capped, world.rows = 0, 0, 0
     world.drag_hi, world.drag_lo, world.meet_hi, world.meet_lo = -1.0, 0.0, -math.inf, 0.0
-    forget_meetings(state.pairs, w)
+    forget_meetings(state, w)
     clear_hits(state, w)
-    _cool_down(state.cooling, w)
-    _switch_on(state.disabled, w)
-    count = state.scenes[world.scene].parts
-    rest_parts(state.motions, state.parts, state.ends, state.guides, w, world.scene, count)
+    _cool_down(state, w)
+    _switch_on(state, w)
+    reset_parts(state, w)
 
 
-@function
-def _cool_down(cooling: Table, w: int) -> None:
-    if cooling is not None:
-        for element in range(cooling.shape[1]):
-            cooling[w, element].hi, cooling[w, element].lo = 0.0, 0.0
+@where("cooling")
+def _cool_down(state: State, w: int) -> None:
+    for element in range(state.cooling.shape[1]):
+        state.cooling[w, element].hi, state.cooling[w, element].lo = 0.0, 0.0
 
 
-@function
-def _switch_on(disabled: Table, w: int) -> None:
-    if disabled is not None:
-        for element in range(disabled.shape[1]):
-            disabled[w, element] = 0
+@where("disabled")
+def _switch_on(state: State, w: int) -> None:
+    for element in range(state.disabled.shape[1]):
+        state.disabled[w, element] = 0
 
 
 @function

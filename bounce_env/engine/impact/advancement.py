@@ -1,7 +1,7 @@
-"""Bounded-acceleration advancement: how far a search may go on without stepping over a hit.
+"""Conservative advancement: how far a search may go on without stepping over a hit.
 
 A gap f(t) of which f'' >= -A is known stays open at least until the first root of f + f' h - A h^2 / 2
-(anchors/numerics.md, "Time of impact"). Each shape finds its own gap, rate and bound.
+(bounded-acceleration, or conservative, advancement). Each shape finds its own gap, rate and bound.
 """
 
 import math
@@ -11,14 +11,14 @@ from bounce_env.engine.compile.jit import function
 
 @function
 def open_for(gap: float, rate: float, bound: float) -> float:
-    """How long [s] a gap surely stays open: that root, for `bound` > 0, in the form in which nothing cancels."""
+    """Return how long [s] a gap surely stays open: that root, for `bound` > 0, in the form in which nothing cancels."""
     root = math.sqrt(rate * rate + 2.0 * bound * gap)
     return 2.0 * gap / (root - rate) if rate < 0.0 else (rate + root) / bound
 
 
 @function
 def closed_after(gap: float, rate: float, bound: float) -> float:
-    """How long [s] a gap that counts as a touch, and closes, takes to close; 0 where it is deeper than it began.
+    """Return how long [s] a gap that counts as a touch, and closes, takes to close; 0 where it is deeper than it began.
 
     Going back from there would end where nothing closes yet.
     """

@@ -1,13 +1,13 @@
 """Time of impact with an arc: from outside, where the distance falls to a radius, and from inside, where it rises.
 
-Coordinates are relative to the arc's centre. A crossing of the full circle counts where its direction lies in the
-arc's span; the others go through its opening.
+Flights are relative to the arc's centre. A crossing of the full circle counts where its direction lies in the arc's
+span; the others go through its opening.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
-from bounce_env.engine.compile.jit import Feature, Record, function, routine
+from bounce_env.engine.compile.jit import Record, function, routine, where
 from bounce_env.engine.impact.quartic import (
     distance_polynomial,
     monotone_borders,
@@ -16,13 +16,27 @@ from bounce_env.engine.impact.quartic import (
     without_root_at_zero,
 )
 from bounce_env.engine.memory.records import CLOSED, MINOR
-from bounce_env.engine.motion.flight import bending, grazes, moved, slow_on_circle, sped
+from bounce_env.engine.motion.flight import (
+    Flight,
+    bending,
+    flight_after,
+    grazes,
+    place_after,
+    slow_on_circle,
+)
 from bounce_env.engine.tolerances import PRESSING, WEIGHTLESS
+
+
+class Circle(NamedTuple):
+    """A circle about the origin: the distance [m] at which it is crossed, rising if `sense` is 1.0, falling if -1.0."""
+
+    reach: float
+    sense: float
 
 
 @function
 def in_span(arc: Any, dx: float, dy: float, slack: float) -> bool:
-    """Whether the point at (dx, dy) [m] from the centre lies beside the arc, its ends included within `slack` [m].
+    """Return whether the point at (dx, dy) [m] from the centre lies beside the arc, ends included within `slack` [m].
 
     `arc` is an ARC, or None for a circle that is no arc.
     """
@@ -39,117 +53,87 @@ def in_span(arc: Any, dx: float, dy: float, slack: float) -> bool:
 
 
 @function
-def arc_time(
-    arc: Record,
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    ax: Feature,
-    ay: Feature,
-    side: int,
-    inside_only: bool,
-    slack: float,
-    horizon: float,
-) -> float:
-    """The earlier hit of the arc's two sides before `horizon` [s], or inf.
+def arc_time(flight: Flight, arc: Record, side: int, inside_only: bool, slack: float, horizon: float) -> float:
+    """Return the earlier hit of the arc's two sides before `horizon` [s], or inf.
 
     `side` is where a ball of no radius is while it touches: 1 outside, -1 inside; 0 for a disc, whose centre tells.
     """
     t = math.inf
     if not inside_only:
-        t = crossing_time(arc, arc.outer, -1.0, x, y, vx, vy, ax, ay, side != -1, slack, -1.0, horizon)
+        t = crossing_time(flight, arc, Circle(arc.outer, -1.0), side != -1, slack, -1.0, horizon)
     if arc.inner > 0.0:
         end = min(t, horizon)
-        t = min(t, crossing_time(arc, arc.inner, 1.0, x, y, vx, vy, ax, ay, side != 1, slack, -1.0, end))
+        t = min(t, crossing_time(flight, arc, Circle(arc.inner, 1.0), side != 1, slack, -1.0, end))
     return t
 
 
 @function
-def entry_time(
-    x: float, y: float, vx: float, vy: float, ax: Feature, ay: Feature, radius: float, outside: bool,
-    slack: float, after: float, horizon: float,
-) -> float:  # fmt: skip
-    """When a point next enters a circle about the origin, later than `after` [s] and before `horizon`, or inf."""
-    return crossing_time(None, radius, -1.0, x, y, vx, vy, ax, ay, outside, slack, after, horizon)
+def entry_time(flight: Flight, radius: float, outside: bool, slack: float, after: float, horizon: float) -> float:
+    """Return when a point next enters a circle about the origin, after `after` [s] and before `horizon`, or inf."""
+    return crossing_time(flight, None, Circle(radius, -1.0), outside, slack, after, horizon)
 
 
 @routine
 def crossing_time(
-    arc: Any,
-    reach: float,
-    sense: float,
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    ax: Feature,
-    ay: Feature,
-    armed: bool,
-    slack: float,
-    after: float,
-    horizon: float,
+    flight: Flight, arc: Any, circle: Circle, armed: bool, slack: float, after: float, horizon: float
 ) -> float:
-    """When the distance from the centre next crosses `reach` beside the arc: rising if `sense` is 1, falling if -1.
+    """Return when the distance from the centre next crosses that of the circle beside the arc.
 
     Later than `after` [s] and before `horizon`; inf if it does not. `armed` says that a ball that touches is on the
     side from which that is a hit.
     """
-    distance = math.sqrt(x * x + y * y)
-    gap = -sense * (distance - reach)
+    distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
+    gap = -circle.sense * (distance - circle.reach)
     touching = abs(gap) <= slack
-    approach = sense * (x * vx + y * vy)
-    slow = slow_on_circle(vx, vy, reach, slack) * distance
-    if touching and armed and approach > slow and after < 0.0 and in_span(arc, x, y, slack):
-        wait = _until_nearest(sense, x, y, vx, vy, ax, ay, slack)
+    approach = circle.sense * (flight.x * flight.vx + flight.y * flight.vy)
+    slow = slow_on_circle(flight, circle.reach, slack) * distance
+    if touching and armed and approach > slow and after < 0.0 and in_span(arc, flight.x, flight.y, slack):
+        wait = _until_nearest(flight, circle.sense, slack)
         return wait if wait > 0.0 else max(gap, 0.0) * distance / approach
     still = touching and abs(approach) <= slow
-    if still and armed and after < 0.0 and _sinks(sense, x, y, vx, vy, ax, ay) and in_span(arc, x, y, slack):
+    if still and armed and after < 0.0 and _sinks(flight, circle.sense) and in_span(arc, flight.x, flight.y, slack):
         return 0.0
-    if ax is None:
-        return _straight(arc, reach, sense, x, y, vx, vy, touching, still, slack, after, horizon)
-    if abs(ax) + abs(ay) < WEIGHTLESS:
-        return _straight(arc, reach, sense, x, y, vx, vy, touching, still, slack, after, horizon)
-    return _curved(arc, reach, sense, x, y, vx, vy, ax, ay, touching, still, slack, after, horizon)
+    return _crossing(flight, arc, circle, touching, still, slack, after, horizon)
 
 
 @function
-def _until_nearest(
-    sense: float, x: float, y: float, vx: float, vy: float, ax: Feature, ay: Feature, slack: float
-) -> float:
+def _until_nearest(flight: Flight, sense: float, slack: float) -> float:
     """How long [s] until a point that touches a circle is nearest, if it does so in passing (see `grazes`); else 0."""
-    distance = math.sqrt(x * x + y * y)
-    closing = sense * (x * vx + y * vy) / distance
-    opening = -sense * bending(x, y, vx, vy, ax, ay)
+    distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
+    closing = sense * (flight.x * flight.vx + flight.y * flight.vy) / distance
+    opening = -sense * bending(flight)
     if closing > 0.0 and opening > 0.0 and grazes(closing * closing, opening, slack):
         return closing / opening
     return 0.0
 
 
 @function
-def _touches_at(
-    arc: Any, reach: float, x: float, y: float, vx: float, vy: float, ax: float, ay: float, t: float, slack: float
-) -> bool:
+def _touches_at(flight: Flight, arc: Any, reach: float, t: float, slack: float) -> bool:
     """Whether a ball touches after `t` seconds, beside the arc."""
-    px, py = moved(x, vx, ax, t), moved(y, vy, ay, t)
-    return abs(math.sqrt(px * px + py * py) - reach) <= slack and in_span(arc, px, py, slack)
+    x, y = place_after(flight, t)
+    return abs(math.sqrt(x * x + y * y) - reach) <= slack and in_span(arc, x, y, slack)
 
 
 @function
-def _sinks(sense: float, x: float, y: float, vx: float, vy: float, ax: Feature, ay: Feature) -> bool:
+def _sinks_coasting(flight: Flight, sense: float) -> bool:
+    return sense > 0.0 and flight.vx * flight.vx + flight.vy * flight.vy > 0.0
+
+
+@where("ax", otherwise=_sinks_coasting)
+def _sinks(flight: Flight, sense: float) -> bool:
     """Whether a point that moves along the circle is about to cross it: the second derivative of its distance tells."""
-    square = vx * vx + vy * vy
-    if ax is None:
-        return sense > 0.0 and square > 0.0
-    return sense * (square + x * ax + y * ay) > PRESSING * (square + abs(x * ax) + abs(y * ay))
+    square = flight.vx * flight.vx + flight.vy * flight.vy
+    dx, dy = flight.x * flight.ax, flight.y * flight.ay
+    return sense * (square + dx + dy) > PRESSING * (square + abs(dx) + abs(dy))
 
 
 @function
 def _straight(
-    arc: Any, reach: float, sense: float, x: float, y: float, vx: float, vy: float,
-    touching: bool, still: bool, slack: float, after: float, horizon: float,
-) -> float:  # fmt: skip
+    flight: Flight, arc: Any, circle: Circle, touching: bool, still: bool, slack: float, after: float, horizon: float
+) -> float:
     """On a straight flight: the smaller root is where the distance falls, the larger where it rises."""
+    x, y, vx, vy, _, _ = flight
+    reach = circle.reach
     square = vx * vx + vy * vy
     half = x * vx + y * vy
     if still:
@@ -162,28 +146,37 @@ def _straight(
     distance = math.sqrt(x * x + y * y)
     rest = 0.0 if touching else (distance - reach) * (distance + reach)
     # Each root is taken from the form that adds two terms of one sign.
-    if sense > 0.0:
+    if circle.sense > 0.0:
         t = (root - half) / square if half < 0.0 else -rest / (root + half)
     else:
         t = rest / (root - half) if half < 0.0 else -(root + half) / square
     if touching and t * square <= root:  # the root at the start, of which the touch has been told
         return math.inf
-    t += _until_nearest(sense, x + vx * t, y + vy * t, vx, vy, None, None, slack)
+    t += _until_nearest(Flight(x + vx * t, y + vy * t, vx, vy, None, None), circle.sense, slack)
     if t < 0.0 or t <= after or t > horizon or not in_span(arc, x + vx * t, y + vy * t, slack):
         return math.inf
     return t
 
 
+@where("ax", otherwise=_straight)
+def _crossing(
+    flight: Flight, arc: Any, circle: Circle, touching: bool, still: bool, slack: float, after: float, horizon: float
+) -> float:
+    if abs(flight.ax) + abs(flight.ay) < WEIGHTLESS:
+        return _straight(flight, arc, circle, touching, still, slack, after, horizon)
+    return _curved(flight, arc, circle, touching, still, slack, after, horizon)
+
+
 @function
 def _curved(
-    arc: Any, reach: float, sense: float, x: float, y: float, vx: float, vy: float, ax: float, ay: float,
-    touching: bool, still: bool, slack: float, after: float, horizon: float,
-) -> float:  # fmt: skip
+    flight: Flight, arc: Any, circle: Circle, touching: bool, still: bool, slack: float, after: float, horizon: float
+) -> float:
     """On a parabola: all crossings in order, up to the first beside the arc."""
-    c = distance_polynomial(x, y, vx, vy, ax, ay, reach)
+    reach, sense = circle
+    c = distance_polynomial(flight, reach)
     if touching:
         # What is left of a gap is no way to go: the hit is where the ball is as near again.
-        c, reach = without_root_at_zero(c), math.sqrt(x * x + y * y)
+        c, reach = without_root_at_zero(c), math.sqrt(flight.x * flight.x + flight.y * flight.y)
     if still:
         c = without_root_at_zero(c)
     borders = monotone_borders(c, horizon)
@@ -191,22 +184,23 @@ def _curved(
         start, end = borders[i], borders[i + 1]
         if not (sense * value(c, start) < 0.0 <= sense * value(c, end)):
             turns = sense < 0.0 and not touching and start < end < horizon and end > after
-            if turns and _touches_at(arc, reach, x, y, vx, vy, ax, ay, end, slack):
+            if turns and _touches_at(flight, arc, reach, end, slack):
                 return end
             continue
         t = root_between(c, start, end)
-        px, py, qx, qy = moved(x, vx, ax, t), moved(y, vy, ay, t), sped(vx, ax, t), sped(vy, ay, t)
-        distance = math.sqrt(px * px + py * py)
-        rate = (px * qx + py * qy) / distance
-        wait = _until_nearest(sense, px, py, qx, qy, ax, ay, slack)
+        now = flight_after(flight, t)
+        distance = math.sqrt(now.x * now.x + now.y * now.y)
+        rate = (now.x * now.vx + now.y * now.vy) / distance
+        wait = _until_nearest(now, sense, slack)
         if wait > 0.0:
             t += wait
         elif sense * rate > 0.0:
             # The polynomial knows the gap through its square only; a step on the distance itself mends the last digits.
             # Where the distance bends within the step there are none to mend: the gap is rounding, the rate next to it.
             step = (distance - reach) / rate
-            if abs(step * bending(px, py, qx, qy, ax, ay)) <= abs(rate):
+            if abs(step * bending(now)) <= abs(rate):
                 t = min(max(t - step, start), end)
-        if t > after and in_span(arc, moved(x, vx, ax, t), moved(y, vy, ay, t), slack):
+        x, y = place_after(flight, t)
+        if t > after and in_span(arc, x, y, slack):
             return t
     return math.inf

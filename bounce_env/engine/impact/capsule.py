@@ -1,31 +1,23 @@
-"""Time of impact of a flying ball with a capsule: its two straight sides and its round ends."""
+"""Time of impact of a flying ball with a capsule that does not turn: its two straight sides and its round ends."""
 
 import math
 
-from bounce_env.engine.compile.jit import Feature, routine
+from bounce_env.engine.compile.jit import routine
 from bounce_env.engine.impact.circle import circle_time
-from bounce_env.engine.impact.line import face_time
+from bounce_env.engine.impact.line import Line, face_time
+from bounce_env.engine.motion.flight import Flight, seen_from
+from bounce_env.engine.motion.parts import Core
 
 
 @routine
-def capsule_time(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    gx: Feature,
-    gy: Feature,
-    ux: float,
-    uy: float,
-    back: float,
-    front: float,
-    reach: float,
-    slack: float,
-    horizon: float,
-) -> float:
-    """Hit of a capsule whose core runs from `back` to `front` [m] along the unit (ux, uy) through the origin."""
-    bx, by, fx, fy = back * ux, back * uy, front * ux, front * uy
-    t = face_time(x - bx, y - by, vx, vy, gx, gy, ux, uy, front - back, reach, 0, slack, horizon)
-    t = min(t, circle_time(x - bx, y - by, vx, vy, gx, gy, reach, slack, min(t, horizon)))
-    t = min(t, circle_time(x - fx, y - fy, vx, vy, gx, gy, reach, slack, min(t, horizon)))
+def capsule_time(flight: Flight, core: Core, reach: float, slack: float, horizon: float) -> float:
+    """Return the hit of a capsule, as a duration [s] up to `horizon`, or inf; the flight is seen from (core.x, core.y).
+
+    reach: the capsule's radius plus the ball's [m].
+    """
+    back = seen_from(flight, core.back * core.ux, core.back * core.uy)
+    front = seen_from(flight, core.front * core.ux, core.front * core.uy)
+    t = face_time(back, Line(core.ux, core.uy, core.front - core.back, reach), 0, slack, horizon)
+    t = min(t, circle_time(back, reach, slack, min(t, horizon)))
+    t = min(t, circle_time(front, reach, slack, min(t, horizon)))
     return t if t <= horizon else math.inf

@@ -1,26 +1,42 @@
 """Time of impact of a flying ball with a circle, from outside.
 
-Coordinates are relative to the circle's centre, in its frame.
+Flights are relative to the circle's centre, in its frame. `reach` is the circle's radius plus the ball's [m]; `slack`
+is the length [m] below which a gap is a touch. Each function returns the duration [s] from now to the hit, or inf.
 """
 
 import math
 
-from bounce_env.engine.compile.jit import Feature, function, routine
+from bounce_env.engine.compile.jit import function, routine, where
 from bounce_env.engine.impact.advancement import open_for
-from bounce_env.engine.impact.arc import crossing_time
-from bounce_env.engine.motion.flight import bending, grazes, moved, slow_on_circle, sped, swept
+from bounce_env.engine.impact.arc import Circle, crossing_time
+from bounce_env.engine.motion.flight import (
+    Flight,
+    bending,
+    flight_after,
+    grazes,
+    moved,
+    slow_on_circle,
+    sped,
+    swept,
+)
 from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, WEIGHTLESS
 
 
+@routine
+def circle_time(flight: Flight, reach: float, slack: float, horizon: float) -> float:
+    """Return the hit of a circle about the origin, from outside."""
+    return _circle_time(flight, reach, slack, horizon)
+
+
 @function
-def straight_circle_time(x: float, y: float, vx: float, vy: float, reach: float, slack: float) -> float:
-    """Hit of a circle about the origin on a straight flight: the smaller root in closed form, nothing cancels."""
-    distance = math.sqrt(x * x + y * y)
-    approach = -(x * vx + y * vy)
-    if approach <= slow_on_circle(vx, vy, reach, slack) * distance:
+def straight_circle_time(flight: Flight, reach: float, slack: float, horizon: float) -> float:
+    """Return the hit on a straight flight: the smaller root in closed form, nothing cancels; `horizon` is not asked."""
+    distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
+    approach = -(flight.x * flight.vx + flight.y * flight.vy)
+    if approach <= slow_on_circle(flight, reach, slack) * distance:
         return math.inf
-    cross = x * vy - y * vx
-    speed_square = vx * vx + vy * vy
+    cross = flight.x * flight.vy - flight.y * flight.vx
+    speed_square = flight.vx * flight.vx + flight.vy * flight.vy
     square = speed_square * reach * reach - cross * cross
     if grazes(abs(square), speed_square * reach, slack):
         return approach / speed_square
@@ -29,53 +45,48 @@ def straight_circle_time(x: float, y: float, vx: float, vy: float, reach: float,
     return max(distance - reach, 0.0) * (distance + reach) / (approach + math.sqrt(square))
 
 
-@function
-def passing(x: float, v: float, reach: float) -> tuple[float, float]:
-    """The durations between which |x + v t| <= reach, as (from, to) with from >= 0; from > to if never."""
-    if abs(v) < STANDING:
-        return 0.0, math.inf if abs(x) <= reach else -1.0
-    inverse = 1.0 / v
-    middle, half = -x * inverse, reach * abs(inverse)
-    return max(middle - half, 0.0), middle + half
+@where("ax", otherwise=straight_circle_time)
+def _circle_time(flight: Flight, reach: float, slack: float, horizon: float) -> float:
+    if abs(flight.ax) + abs(flight.ay) < WEIGHTLESS:
+        return straight_circle_time(flight, reach, slack, horizon)
+    return curved_circle_time(flight, reach, slack, horizon)
 
 
 @function
-def curved_circle_time(
-    x: float, y: float, vx: float, vy: float, gx: float, gy: float, reach: float, slack: float, horizon: float
-) -> float:
-    """Hit of a circle about the origin under gravity, by bounded-acceleration advancement.
+def curved_circle_time(flight: Flight, reach: float, slack: float, horizon: float) -> float:
+    """Return the hit of a circle about the origin under gravity, by bounded-acceleration advancement.
 
-    The gap f(t) to a convex obstacle satisfies f'' >= -|g|, so stepping to the first root of f + f' h - |g| h^2 / 2
+    The gap f(t) to a convex obstacle satisfies f'' >= -|a|, so stepping to the first root of f + f' h - |a| h^2 / 2
     cannot step over a hit, and converges quadratically. Just after a bounce f = 0 and f' > 0, and the same step leaves
     the circle: no ball is pushed off, no circle is skipped. A touch in passing is told where the path is nearest (see
     `grazes`). Across gravity along an axis the flight is uniform: the search is confined to the time in which it passes
     the circle there, and to flights that come near it then.
     """
+    x, y, vx, vy, ax, ay = flight
     t = 0.0
-    if gx == 0.0:
+    if ax == 0.0:
         t, end = passing(x, vx, reach + slack)
         horizon = min(horizon, end)
-        if not near(moved(y, vy, gy, t), sped(vy, gy, t), gy, horizon - t, reach + slack):
+        if not comes_near(moved(y, vy, ay, t), sped(vy, ay, t), ay, horizon - t, reach + slack):
             return math.inf
-    elif gy == 0.0:
+    elif ay == 0.0:
         t, end = passing(y, vy, reach + slack)
         horizon = min(horizon, end)
-        if not near(moved(x, vx, gx, t), sped(vx, gx, t), gx, horizon - t, reach + slack):
+        if not comes_near(moved(x, vx, ax, t), sped(vx, ax, t), ax, horizon - t, reach + slack):
             return math.inf
-    bound = math.sqrt(gx * gx + gy * gy)
+    bound = math.sqrt(ax * ax + ay * ay)
     away = 0.0
     if x * x + y * y <= (reach + slack) * (reach + slack) and x * vx + y * vy > 0.0:
         # It has just bounced there: what is left of a gap is rounding, and would count for much in the last hops.
         away = math.sqrt(x * x + y * y) - reach
     for _ in range(SEARCH_STEPS):
-        px, py = moved(x, vx, gx, t), moved(y, vy, gy, t)
-        qx, qy = sped(vx, gx, t), sped(vy, gy, t)
-        distance = math.sqrt(px * px + py * py)
+        now = flight_after(flight, t)
+        distance = math.sqrt(now.x * now.x + now.y * now.y)
         gap = distance - reach - away
-        rate = (px * qx + py * qy) / distance
+        rate = (now.x * now.vx + now.y * now.vy) / distance
         if gap <= slack:
-            bend = bending(px, py, qx, qy, gx, gy)
-            slow = rate >= -slow_on_circle(qx, qy, reach, slack)
+            bend = bending(now)
+            slow = rate >= -slow_on_circle(now, reach, slack)
             told = slow and t == 0.0  # where the flight begins all that is touched has just been seen
             if rate < 0.0 and not told and grazes(rate * rate, bend, gap + slack):
                 return t - rate / bend
@@ -89,25 +100,23 @@ def curved_circle_time(
         if t > horizon:
             return math.inf
     # Along the circle's tangent from a touch the gap hardly opens, and each step is but a small one.
-    return crossing_time(None, reach, -1.0, x, y, vx, vy, gx, gy, True, slack, -1.0, horizon)
+    return crossing_time(flight, None, Circle(reach, -1.0), True, slack, -1.0, horizon)
 
 
 @function
-def near(x: float, v: float, g: float, t: float, reach: float) -> bool:
-    """Whether x + v t + g t^2 / 2 comes within `reach` of 0 in the next `t` seconds; a `t` < 0 is never."""
+def passing(x: float, v: float, reach: float) -> tuple[float, float]:
+    """Return the durations between which |x + v t| <= reach, as (from, to) with from >= 0; from > to if never."""
+    if abs(v) < STANDING:
+        return 0.0, math.inf if abs(x) <= reach else -1.0
+    inverse = 1.0 / v
+    middle, half = -x * inverse, reach * abs(inverse)
+    return max(middle - half, 0.0), middle + half
+
+
+@function
+def comes_near(x: float, v: float, a: float, t: float, reach: float) -> bool:
+    """Return whether x + v t + a t^2 / 2 comes within `reach` of 0 in the next `t` seconds; a `t` < 0 is never."""
     if t < 0.0:
         return False
-    low, high = swept(x, v, g, t)
+    low, high = swept(x, v, a, t)
     return low <= reach and high >= -reach
-
-
-@routine
-def circle_time(
-    x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, reach: float, slack: float, horizon: float
-) -> float:
-    """Hit of a circle about the origin, from outside."""
-    if gx is None:
-        return straight_circle_time(x, y, vx, vy, reach, slack)
-    if abs(gx) + abs(gy) < WEIGHTLESS:
-        return straight_circle_time(x, y, vx, vy, reach, slack)
-    return curved_circle_time(x, y, vx, vy, gx, gy, reach, slack, horizon)

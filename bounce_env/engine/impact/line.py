@@ -1,132 +1,96 @@
-"""Time of impact of a flying ball with a face and with a circle: one pure scalar function per shape.
+"""Time of impact of a flying ball with a straight wall, and with each of its two faces.
 
-All coordinates are relative to the obstacle, in its frame: for a part that moves uniformly the caller subtracts the
-part's position and velocity, and the same functions serve. `reach` is the obstacle's radius plus the ball's [m];
-`slack` is the length [m] below which a gap is a touch. Each returns the duration [s] from now to the hit, or inf.
+Flights are relative to the wall's start, in its frame: for a part that moves uniformly the caller subtracts the part's
+position and velocity, and the same functions serve. `slack` is the length [m] below which a gap is a touch. Each
+function returns the duration [s] from now to the hit, or inf.
 """
 
 import math
+from typing import NamedTuple
 
-from bounce_env.engine.compile.jit import Feature, function
-from bounce_env.engine.motion.flight import dot, moved
+from bounce_env.engine.compile.jit import function
+from bounce_env.engine.motion.flight import Flight, acceleration_along, place_after
 from bounce_env.engine.motion.roots import falling_time
 from bounce_env.engine.tolerances import CORNER, ULPS_OF_SPEED
 
 
+class Line(NamedTuple):
+    """A wall from the origin: unit vector along it, its length [m], and how near [m] the ball's centre comes to it."""
+
+    ux: float
+    uy: float
+    length: float
+    reach: float
+
+
 @function
-def line_time(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    gx: Feature,
-    gy: Feature,
-    ux: float,
-    uy: float,
-    reach: float,
-    facing: float,
-    side: float,
-    slack: float,
-) -> float:
-    """As `facing_time`, for a line that has no ends."""
-    nx, ny = -facing * uy, facing * ux
-    gap = x * nx + y * ny - reach
-    rate = vx * nx + vy * ny
+def line_time(flight: Flight, line: Line, facing: float, side: float, slack: float) -> float:
+    """Return the hit of one side of a line, taken to have no ends; arguments as for `facing_time`."""
+    nx, ny = -facing * line.uy, facing * line.ux
+    gap = flight.x * nx + flight.y * ny - line.reach
+    rate = flight.vx * nx + flight.vy * ny
     if side == 0.0 and gap >= -CORNER * slack:
         # A disc that touches several surfaces is put on one of them, and may be that deep in another.
         gap = max(gap, 0.0)
     behind = gap < -slack or (gap <= slack and side == -facing)
     if abs(gap) <= slack:
-        if abs(rate) <= ULPS_OF_SPEED * (abs(vx) + abs(vy)):
+        if abs(rate) <= ULPS_OF_SPEED * (abs(flight.vx) + abs(flight.vy)):
             rate = 0.0
         # It has just bounced there: what is left of a gap is rounding, and would count for much in the last hops.
         if behind:
             gap = min(gap, 0.0)
         elif rate > 0.0:
             gap = 0.0
-    return falling_time(gap, behind, rate, dot(gx, gy, nx, ny))
+    return falling_time(gap, behind, rate, acceleration_along(flight, nx, ny))
 
 
 @function
-def beside(x: float, y: float, ux: float, uy: float, length: float, slack: float) -> bool:
-    """Whether a point lies beside a wall, however far: neither before its start nor beyond its end."""
-    along = x * ux + y * uy
-    return -slack <= along <= length + slack
+def is_beside(line: Line, x: float, y: float, slack: float) -> bool:
+    """Return whether a point lies beside a wall, however far: neither before its start nor beyond its end."""
+    along = x * line.ux + y * line.uy
+    return -slack <= along <= line.length + slack
 
 
 @function
-def leaves_end(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    gx: Feature,
-    gy: Feature,
-    ux: float,
-    uy: float,
-    length: float,
-    reach: float,
-    slack: float,
-) -> bool:
-    """Whether a ball slides off the end of a wall just now: it touches still, but will be beside it when it falls."""
-    slow = ULPS_OF_SPEED * (abs(vx) + abs(vy))
-    if not beside(x, y, ux, uy, length, slack):
+def leaves_end(flight: Flight, line: Line, slack: float) -> bool:
+    """Return whether a ball slides off the end of a wall now: it still touches, but will be beside it when it falls."""
+    slow = ULPS_OF_SPEED * (abs(flight.vx) + abs(flight.vy))
+    if not is_beside(line, flight.x, flight.y, slack):
         return False
-    if abs(abs(y * ux - x * uy) - reach) > slack or abs(vy * ux - vx * uy) > slow:
+    if abs(abs(flight.y * line.ux - flight.x * line.uy) - line.reach) > slack:
         return False
-    along = x * ux + y * uy
-    lean = vx * ux + vy * uy
-    if abs(lean) <= slow and gx is not None:
-        lean = gx * ux + gy * uy
-    return (along >= length - slack and lean > 0.0) or (along <= slack and lean < 0.0)
+    if abs(flight.vy * line.ux - flight.vx * line.uy) > slow:
+        return False
+    along = flight.x * line.ux + flight.y * line.uy
+    lean = flight.vx * line.ux + flight.vy * line.uy
+    if abs(lean) <= slow:
+        lean = _or_else(acceleration_along(flight, line.ux, line.uy), lean)
+    return (along >= line.length - slack and lean > 0.0) or (along <= slack and lean < 0.0)
 
 
 @function
-def facing_time(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    gx: Feature,
-    gy: Feature,
-    ux: float,
-    uy: float,
-    length: float,
-    reach: float,
-    facing: float,
-    side: float,
-    slack: float,
-    horizon: float,
-) -> float:
-    """Hit of one face of a wall that starts at the origin and runs `length` along the unit vector (ux, uy).
+def _or_else(value: float | None, other: float) -> float:
+    return other if value is None else value
 
-    `facing` 1.0 is the face on the left of that direction, -1.0 the one on the right. `side` is the side, 1 or -1, on
-    which a ball of no radius is while it touches the wall; 0 for a disc, whose centre keeps its distance.
+
+@function
+def facing_time(flight: Flight, line: Line, facing: float, side: float, slack: float, horizon: float) -> float:
+    """Return the hit of one face of a wall, before `horizon` [s].
+
+    `facing` 1.0 is the face on the left of the wall's direction, -1.0 the one on the right. `side` is the side, 1 or
+    -1, on which a ball of no radius is while it touches the wall; 0 for a disc, whose centre keeps its distance.
     """
-    t = line_time(x, y, vx, vy, gx, gy, ux, uy, reach, facing, side, slack)
-    if t > horizon or t == math.inf or leaves_end(x, y, vx, vy, gx, gy, ux, uy, length, reach, slack):
+    t = line_time(flight, line, facing, side, slack)
+    if t > horizon or t == math.inf or leaves_end(flight, line, slack):
         return math.inf
     # The slack closes the joint between two walls for a ball of no radius; for a disc the end's circle takes over.
-    return t if beside(moved(x, vx, gx, t), moved(y, vy, gy, t), ux, uy, length, slack) else math.inf
+    x, y = place_after(flight, t)
+    return t if is_beside(line, x, y, slack) else math.inf
 
 
 @function
-def face_time(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    gx: Feature,
-    gy: Feature,
-    ux: float,
-    uy: float,
-    length: float,
-    reach: float,
-    side: float,
-    slack: float,
-    horizon: float,
-) -> float:
-    """The earlier hit of the two faces of a wall; arguments as for `facing_time`."""
-    left = facing_time(x, y, vx, vy, gx, gy, ux, uy, length, reach, 1.0, side, slack, horizon)
-    right = facing_time(x, y, vx, vy, gx, gy, ux, uy, length, reach, -1.0, side, slack, horizon)
+def face_time(flight: Flight, line: Line, side: float, slack: float, horizon: float) -> float:
+    """Return the earlier hit of the two faces of a wall; arguments as for `facing_time`."""
+    left = facing_time(flight, line, 1.0, side, slack, horizon)
+    right = facing_time(flight, line, -1.0, side, slack, horizon)
     return min(left, right)

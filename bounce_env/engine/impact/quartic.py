@@ -8,14 +8,16 @@ intervals on which the polynomial itself is, and in each of these a root is brac
 import math
 
 from bounce_env.engine.compile.jit import function
+from bounce_env.engine.motion.flight import Flight
 from bounce_env.engine.tolerances import BRACKETING_STEPS
 
 Coefficients = tuple[float, float, float, float, float]  # of t^0 to t^4
 
 
 @function
-def distance_polynomial(x: float, y: float, vx: float, vy: float, ax: float, ay: float, reach: float) -> Coefficients:
-    """|p(t)|^2 - reach^2 for p(t) = (x, y) + (vx, vy) t + (ax, ay) t^2 / 2."""
+def distance_polynomial(flight: Flight, reach: float) -> Coefficients:
+    """Return |p(t)|^2 - reach^2 of a flight p(t), as a polynomial in t."""
+    x, y, vx, vy, ax, ay = flight
     distance = math.sqrt(x * x + y * y)
     return (
         (distance - reach) * (distance + reach),
@@ -28,25 +30,25 @@ def distance_polynomial(x: float, y: float, vx: float, vy: float, ax: float, ay:
 
 @function
 def without_root_at_zero(c: Coefficients) -> Coefficients:
-    """The polynomial divided by t, its constant taken for zero: the same crossings, but for the one at the start."""
+    """Return the polynomial divided by t, its constant taken for zero: all crossings but the one at the start."""
     return c[1], c[2], c[3], c[4], 0.0
 
 
 @function
 def value(c: Coefficients, t: float) -> float:
-    """The polynomial at t."""
+    """Return the polynomial at t."""
     return c[0] + (c[1] + (c[2] + (c[3] + c[4] * t) * t) * t) * t
 
 
 @function
 def slope(c: Coefficients, t: float) -> float:
-    """Its first derivative at t."""
+    """Return its first derivative at t."""
     return c[1] + (2.0 * c[2] + (3.0 * c[3] + 4.0 * c[4] * t) * t) * t
 
 
 @function
 def inflections(c: Coefficients, horizon: float) -> tuple[float, float]:
-    """The roots of the second derivative, in order and cut to [0, horizon]."""
+    """Return the roots of the second derivative, in order and cut to [0, horizon]."""
     p, q, r = 2.0 * c[2], 3.0 * c[3], 12.0 * c[4]  # p + 2 q t + r t^2
     square = q * q - p * r
     if square <= 0.0:
@@ -60,7 +62,7 @@ def inflections(c: Coefficients, horizon: float) -> tuple[float, float]:
 
 @function
 def turning_point(c: Coefficients, low: float, high: float) -> float:
-    """Where in [low, high] the first derivative, monotone there, is zero; `low` if nowhere."""
+    """Return where in [low, high] the first derivative, monotone there, is zero; `low` if nowhere."""
     at_low = slope(c, low)
     if (at_low < 0.0) == (slope(c, high) < 0.0):
         return low
@@ -84,7 +86,7 @@ def turning_point(c: Coefficients, low: float, high: float) -> float:
 
 @function
 def root_between(c: Coefficients, low: float, high: float) -> float:
-    """The root in [low, high], where the polynomial is monotone and changes sign."""
+    """Return the root in [low, high], where the polynomial is monotone and changes sign."""
     at_low = value(c, low)
     start, end = low, high
     t = 0.5 * (start + end)
@@ -105,7 +107,7 @@ def root_between(c: Coefficients, low: float, high: float) -> float:
 
 @function
 def monotone_borders(c: Coefficients, horizon: float) -> tuple[float, float, float, float, float]:
-    """Times in order, from 0 to `horizon`, between which the polynomial is monotone."""
+    """Return times in order, from 0 to `horizon`, between which the polynomial is monotone."""
     first, second = inflections(c, horizon)
     return (
         0.0,

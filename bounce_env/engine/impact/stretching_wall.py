@@ -5,64 +5,61 @@ at w = (D x E) / |D|^2, of which D x E does not change. In the frame that turns 
 its line has h'' = g_h - 2 w u_a - w^2 h - w' a, with u the ball's velocity relative to P and a <= |D| where it is
 beside the wall; and |w'| a <= 2 |w| |E|. About the ends the gap is convex but for gravity. So the gap f(t), whose rate
 of change does not jump between the two, satisfies f'' >= -A with A = |g| + |w| (2 (|u| + |E|) + |w| h) at their
-greatest, and a step to the first root of f + f' h - A h^2 / 2 cannot step over a hit (anchors/numerics.md, "Time of
-impact").
+greatest, and a step to the first root of f + f' h - A h^2 / 2 cannot step over a hit.
 """
 
 import math
 
-from bounce_env.engine.compile.jit import Feature, function
+from bounce_env.engine.compile.jit import function
 from bounce_env.engine.impact.advancement import closed_after, open_for
-from bounce_env.engine.motion.flight import magnitude, moved, sped
+from bounce_env.engine.motion.flight import Flight, flight_after, magnitude
 from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
 
 
 @function
 def segment_gap(
-    px: float, py: float, qx: float, qy: float, dx: float, dy: float, ex: float, ey: float, facing: float, slack: float
+    flight: Flight, dx: float, dy: float, ex: float, ey: float, facing: float, slack: float
 ) -> tuple[float, float, float]:
-    """Distance [m] from a wall along (dx, dy) to (px, py) about its start, its rate of change [m/s], and the side.
+    """Return the distance [m] from a wall along (dx, dy) to a flight's point, its rate of change [m/s], and the side.
 
-    (qx, qy) is the ball's velocity relative to the start, (ex, ey) that of the wall's end. `facing` is the side, 1.0
-    or -1.0, that the ball is taken to be on while its height over the wall is no more than a few times the slack; the
-    distance from the wall's line is negative on the other one. The side returned is the one that a larger height tells.
+    The flight is relative to the wall's start, and (ex, ey) is the velocity of the wall's end there. `facing` is the
+    side, 1.0 or -1.0, that the ball is taken to be on while its height over the wall is no more than a few times the
+    slack; the distance from the wall's line is negative on the other one. The side returned is the one that a larger
+    height tells.
     """
     length = math.sqrt(dx * dx + dy * dy)
     ux, uy = dx / length, dy / length
-    along, height = px * ux + py * uy, py * ux - px * uy
+    along, height = flight.x * ux + flight.y * uy, flight.y * ux - flight.x * uy
     if abs(height) > 4.0 * slack:  # a step along the surface may end a little deeper than it began
         facing = 1.0 if height > 0.0 else -1.0
     if -slack <= along <= length + slack:
         share = along / length
-        rate = (qy - share * ey) * ux - (qx - share * ex) * uy
+        rate = (flight.vy - share * ey) * ux - (flight.vx - share * ex) * uy
         return facing * height, facing * rate, facing
     share = 0.0 if along < 0.0 else 1.0
-    x, y = px - share * dx, py - share * dy
+    x, y = flight.x - share * dx, flight.y - share * dy
     distance = math.sqrt(x * x + y * y)
-    return distance, (x * (qx - share * ex) + y * (qy - share * ey)) / distance, facing
+    return distance, (x * (flight.vx - share * ex) + y * (flight.vy - share * ey)) / distance, facing
 
 
 @function
-def _bound(
-    px: float, py: float, qx: float, qy: float, pull: float, dx: float, dy: float, ex: float, ey: float, window: float
-) -> float:
+def _bound(flight: Flight, pull: float, dx: float, dy: float, ex: float, ey: float, window: float) -> float:
     """A of the module's text over the next `window` seconds [m/s^2]."""
     spread = math.sqrt(ex * ex + ey * ey)
     # When the wall is shortest: where its ends are nearest to each other.
     t = min(max(-(dx * ex + dy * ey) / (spread * spread), 0.0), window)
     sx, sy = dx + ex * t, dy + ey * t
     spin = abs(dx * ey - dy * ex) / (sx * sx + sy * sy)
-    speed = math.sqrt(qx * qx + qy * qy)
-    height = math.sqrt(px * px + py * py) + (speed + 0.5 * pull * window) * window
+    speed = math.sqrt(flight.vx * flight.vx + flight.vy * flight.vy)
+    height = math.sqrt(flight.x * flight.x + flight.y * flight.y) + (speed + 0.5 * pull * window) * window
     return pull + spin * (2.0 * (speed + pull * window + spread) + spin * height)
 
 
 @function
-def stretching_time(
-    x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature, dx: float, dy: float, ex: float, ey: float,
-    reach: float, side: int, slack: float, horizon: float,
-) -> float:  # fmt: skip
-    """Hit of a wall that runs from the origin along (dx, dy) [m] and changes by (ex, ey) [m/s], not both 0.
+def stretching_wall_time(
+    flight: Flight, dx: float, dy: float, ex: float, ey: float, reach: float, side: int, slack: float, horizon: float
+) -> float:
+    """Return the hit of a wall that runs from the origin along (dx, dy) [m] and changes by (ex, ey) [m/s], not both 0.
 
     All is relative to the wall's start, which moves uniformly. A duration [s] up to `horizon`, or inf. side: on which
     side a ball of no radius is while it touches, otherwise 0. Where the ball neither comes closer nor leaves for very
@@ -70,21 +67,21 @@ def stretching_time(
     """
     if not horizon >= 0.0:
         return math.inf
-    pull, spread = magnitude(gx, gy), math.sqrt(ex * ex + ey * ey)
+    pull, spread = magnitude(flight.ax, flight.ay), math.sqrt(ex * ex + ey * ey)
     t, away, facing = 0.0, 0.0, 1.0 if side >= 0 else -1.0
     for step in range(16 * SEARCH_STEPS):
-        px, py, qx, qy = moved(x, vx, gx, t), moved(y, vy, gy, t), sped(vx, gx, t), sped(vy, gy, t)
+        now = flight_after(flight, t)
         rx, ry = dx + ex * t, dy + ey * t
-        distance, rate, facing = segment_gap(px, py, qx, qy, rx, ry, ex, ey, facing, slack)
+        distance, rate, facing = segment_gap(now, rx, ry, ex, ey, facing, slack)
         if step == 0 and distance - reach <= slack and rate > 0.0:
             away = distance - reach  # what is left of a gap after a bounce is rounding
         gap = distance - reach - away
-        speed = math.sqrt(qx * qx + qy * qy)
+        speed = math.sqrt(now.vx * now.vx + now.vy * now.vy)
         # A bound holds over a window only: first one in which something may happen, then one not much longer than the
         # step that this allows.
-        size = math.sqrt(px * px + py * py) + math.sqrt(rx * rx + ry * ry)
+        size = math.sqrt(now.x * now.x + now.y * now.y) + math.sqrt(rx * rx + ry * ry)
         window = min(horizon - t, 2.0 * size / (speed + spread + math.sqrt(pull * size)))
-        bound = _bound(px, py, qx, qy, pull, rx, ry, ex, ey, window)
+        bound = _bound(now, pull, rx, ry, ex, ey, window)
         if gap <= slack:
             if rate < -ULPS_OF_SPEED * (speed + spread):
                 after = t + closed_after(gap, rate, bound)
@@ -92,7 +89,7 @@ def stretching_time(
             rate, gap = max(rate, 0.0), max(gap, 0.0)
         before = t
         nearer = min(window, 3.0 * open_for(gap, rate, bound))
-        bound = _bound(px, py, qx, qy, pull, rx, ry, ex, ey, nearer)
+        bound = _bound(now, pull, rx, ry, ex, ey, nearer)
         t += min(open_for(gap, rate, bound), nearer)
         if rate >= 0.0:
             # Along the surface no step is shorter than that in which a gap changes by what counts as touching.

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bounce_env.engine.compile.jit import Table
 from bounce_env.engine.memory.records import (
     BALL,
     COOLING,
@@ -29,34 +30,34 @@ class State(NamedTuple):
     # The scenes: first axis scenes, second axis rows.
     scenes: Array
     elements: Array
-    gravity: Array | None  # (scenes, 2) m/s^2; there as well where a scene has a field
-    faces: Array | None
-    gates: Array | None  # (scenes, faces) int8: 1 for a one-way wall
-    circles: Array | None
-    arcs: Array | None
-    sensors: Array | None
-    rings: Array | None
-    edges: Array | None  # of fields
-    parts: Array | None
-    turns: Array | None  # (scenes, parts) int8: 1 or -1, which way a part turns; 0 slides
-    guides: Array | None  # (scenes, parts) GUIDE; None: no scene has a wall that is dragged
-    drags: Array | None  # (scenes,) factor on the velocity at each instant of a command
+    gravity: Table  # (scenes, 2) m/s^2; there as well where a scene has a field
+    faces: Table
+    gates: Table  # (scenes, faces) int8: 1 for a one-way wall
+    circles: Table
+    arcs: Table
+    sensors: Table
+    rings: Table
+    edges: Table  # of fields
+    parts: Table
+    turns: Table  # (scenes, parts) int8: 1 or -1, which way a part turns; 0 slides
+    guides: Table  # (scenes, parts) GUIDE; None: no scene has a wall that is dragged
+    drags: Table  # (scenes,) factor on the velocity at each instant of a command
     # The worlds: first axis worlds.
     worlds: Array
     balls: Array  # (worlds, balls)
-    motions: Array | None  # (worlds, parts)
-    ends: Array | None  # (worlds, parts) ENDS; None where nothing is dragged
-    zones: Array | None  # (worlds, balls, parts)
-    face_sides: Array | None  # (worlds, balls, faces) int8; only for a ball of no radius
-    arc_sides: Array | None  # (worlds, balls, arcs) int8; only for a ball of no radius
-    part_sides: Array | None  # (worlds, balls, parts) int8; only for a ball of no radius, where walls are dragged
-    sensor_sides: Array | None  # (worlds, balls, sensors) int8
-    ring_sides: Array | None  # (worlds, balls, rings) int8: 1 outside, -1 inside
-    edge_sides: Array | None  # (worlds, balls, edges) int8: 1 on the field's side
-    pairs: Array | None  # (worlds, balls, balls) PAIR, by the later and the earlier ball; None for one ball, and points
+    motions: Table  # (worlds, parts)
+    ends: Table  # (worlds, parts) ENDS; None where nothing is dragged
+    zones: Table  # (worlds, balls, parts)
+    face_sides: Table  # (worlds, balls, faces) int8; only for a ball of no radius
+    arc_sides: Table  # (worlds, balls, arcs) int8; only for a ball of no radius
+    part_sides: Table  # (worlds, balls, parts) int8; only for a ball of no radius, where walls are dragged
+    sensor_sides: Table  # (worlds, balls, sensors) int8
+    ring_sides: Table  # (worlds, balls, rings) int8: 1 outside, -1 inside
+    edge_sides: Table  # (worlds, balls, edges) int8: 1 on the field's side
+    pairs: Table  # (worlds, balls, balls) PAIR, by the later and the earlier ball; None for one ball, and points
     touches: Array  # (worlds, TOUCHES) TOUCH: what a ball touches at the instant that is resolved
-    disabled: Array | None  # (worlds, elements) int8; None where nothing can be switched off
-    cooling: Array | None  # (worlds, elements) COOLING; None where no scene has a cooldown
+    disabled: Table  # (worlds, elements) int8; None where nothing can be switched off
+    cooling: Table  # (worlds, elements) COOLING; None where no scene has a cooldown
     hits: Array  # (worlds, elements) int64: how often each was struck or crossed in the last step
 
 
@@ -82,7 +83,7 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
     """
     parts, guides, elements = tables["parts"], tables["guides"], tables["elements"]
 
-    def sides(table: Array | None) -> Array | None:
+    def sides(table: Table) -> Array | None:
         return None if table is None else np.zeros((worlds, balls, table.shape[1]), np.int8)
 
     return State(

@@ -16,7 +16,7 @@ NEVER = 1e300
 
 @function
 def line_at(ends: Record, t: float) -> tuple[float, float, float, float, float]:
-    """Where the wall is after `t` seconds of its motion: its start (x, y) [m], unit vector along it, length [m]."""
+    """Return where the wall is after `t` seconds of its motion: start (x, y) [m], unit vector along it, length [m]."""
     x, y = ends.x0 + ends.vx0 * t, ends.y0 + ends.vy0 * t
     dx, dy = ends.x1 + ends.vx1 * t - x, ends.y1 + ends.vy1 * t - y
     length = math.sqrt(dx * dx + dy * dy)
@@ -25,13 +25,13 @@ def line_at(ends: Record, t: float) -> tuple[float, float, float, float, float]:
 
 @function
 def velocity_on(ends: Record, share: float) -> tuple[float, float]:
-    """Velocity [m/s] of the point of the wall that lies `share` of the way from its start to its end."""
+    """Return the velocity [m/s] of the point of the wall that lies `share` of the way from its start to its end."""
     return ends.vx0 + share * (ends.vx1 - ends.vx0), ends.vy0 + share * (ends.vy1 - ends.vy0)
 
 
 @function
 def height_over(ends: Record, t: float, x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
-    """How far [m] a point is on the left of the wall's line after `t` seconds of its motion, and how fast it rises."""
+    """Return the height [m] of a point over the wall's line, on its left, after `t` seconds, and its rate [m/s]."""
     ox, oy, ux, uy, length = line_at(ends, t)
     sx, sy = velocity_on(ends, ((x - ox) * ux + (y - oy) * uy) / length)
     return (y - oy) * ux - (x - ox) * uy, (vy - sy) * ux - (vx - sx) * uy

@@ -1,121 +1,187 @@
-"""Flight in closed form, from the last event: p(t) = p0 + v0 t + g t^2 / 2, v(t) = v0 + g t.
+"""Flight in closed form, from the last event: p(t) = p0 + v0 t + a t^2 / 2, v(t) = v0 + a t.
 
-`g` is None in a scene without gravity, and then nothing of it is compiled. A component that is zero at run time takes
-the same formula as one that is not there, so that the general kernel gives the same bits as the lean one.
+The acceleration is None in a batch without gravity, and then nothing of it is compiled. A component that is zero at run
+time takes the same formula as one that is not there, so that the general kernel gives the same bits as the lean one.
 """
 
 import math
+from typing import NamedTuple
 
-from bounce_env.engine.compile.jit import Feature, Record, function, function_of_feature
+from bounce_env.engine.compile.jit import Feature, Record, function, where
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import ULPS_OF_LENGTH, ULPS_OF_SPEED
 
 
-@function
-def moved(x: float, v: float, g: Feature, t: float) -> float:
-    """One coordinate [m] after `t` seconds."""
-    if g is None:
-        return x + v * t
-    if g == 0.0:
-        return x + v * t
-    return x + (v + 0.5 * g * t) * t
+class Flight(NamedTuple):
+    """A point in flight, seen from any origin: place [m], velocity [m/s], acceleration [m/s^2] or None."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    ax: Feature
+    ay: Feature
+
+
+def _coasting_flight(state: State, ball: Record) -> Flight:
+    return Flight(ball.x, ball.y, ball.vx, ball.vy, None, None)
+
+
+@where("gravity", otherwise=_coasting_flight)
+def flight_of(state: State, ball: Record) -> Flight:
+    """Return the present flight of a ball, from its last event on."""
+    return Flight(ball.x, ball.y, ball.vx, ball.vy, ball.ax, ball.ay)
 
 
 @function
-def sped(v: float, g: Feature, t: float) -> float:
-    """One component of the velocity [m/s] after `t` seconds."""
-    if g is None:
-        return v
-    if g == 0.0:
-        return v
-    return v + g * t
+def moved(x: float, v: float, a: Feature, t: float) -> float:
+    """Return one coordinate [m] after `t` seconds."""
+    if a is None:
+        return x + v * t
+    if a == 0.0:
+        return x + v * t
+    return x + (v + 0.5 * a * t) * t
 
 
-def _no_dot(ax: Feature, ay: Feature, nx: float, ny: float) -> None:
+@function
+def sped(v: float, a: Feature, t: float) -> float:
+    """Return one component of the velocity [m/s] after `t` seconds."""
+    if a is None:
+        return v
+    if a == 0.0:
+        return v
+    return v + a * t
+
+
+@function
+def place_after(flight: Flight, t: float) -> tuple[float, float]:
+    """Return where [m] the flight is after `t` seconds."""
+    return moved(flight.x, flight.vx, flight.ax, t), moved(flight.y, flight.vy, flight.ay, t)
+
+
+@function
+def velocity_after(flight: Flight, t: float) -> tuple[float, float]:
+    """Return the velocity [m/s] after `t` seconds."""
+    return sped(flight.vx, flight.ax, t), sped(flight.vy, flight.ay, t)
+
+
+@function
+def flight_after(flight: Flight, t: float) -> Flight:
+    """Return the flight as it goes on after `t` seconds."""
+    x, y = place_after(flight, t)
+    vx, vy = velocity_after(flight, t)
+    return Flight(x, y, vx, vy, flight.ax, flight.ay)
+
+
+@function
+def seen_from(flight: Flight, x: float, y: float) -> Flight:
+    """Return the flight with the origin at (x, y) [m]."""
+    return Flight(flight.x - x, flight.y - y, flight.vx, flight.vy, flight.ax, flight.ay)
+
+
+@function
+def slowed_by(flight: Flight, vx: float, vy: float) -> Flight:
+    """Return the flight as seen in a frame that moves at (vx, vy) [m/s]."""
+    return Flight(flight.x, flight.y, flight.vx - vx, flight.vy - vy, flight.ax, flight.ay)
+
+
+def _no_component(flight: Flight, nx: float, ny: float) -> None:
     return None
 
 
-@function_of_feature(absent=_no_dot)
-def dot(ax: Feature, ay: Feature, nx: float, ny: float) -> Feature:
-    """Scalar product; None where the vector (gravity) is."""
-    return ax * nx + ay * ny
+@where("ax", otherwise=_no_component)
+def acceleration_along(flight: Flight, nx: float, ny: float) -> Feature:
+    """Return the component of the acceleration [m/s^2] along a unit vector; None where there is no acceleration."""
+    return flight.ax * nx + flight.ay * ny
 
 
 @function
-def magnitude(gx: Feature, gy: Feature) -> float:
-    """Length of the gravity vector [m/s^2]; 0 where there is none."""
-    if gx is None:
+def magnitude(ax: Feature, ay: Feature) -> float:
+    """Return the length of an acceleration [m/s^2]; 0 where there is none."""
+    if ax is None:
         return 0.0
-    return math.sqrt(gx * gx + gy * gy)
+    return math.sqrt(ax * ax + ay * ay)
 
 
 @function
-def swept(x: float, v: float, g: Feature, t: float) -> tuple[float, float]:
-    """The smallest and the largest value [m] that one coordinate takes on during the next `t` seconds."""
-    end = moved(x, v, g, t)
+def swept(x: float, v: float, a: Feature, t: float) -> tuple[float, float]:
+    """Return the smallest and the largest value [m] that one coordinate takes on during the next `t` seconds."""
+    end = moved(x, v, a, t)
     low, high = min(x, end), max(x, end)
-    if g is not None and v * g < 0.0 and abs(v) < abs(g) * t:
-        turn = x - 0.5 * v * v / g
+    if a is not None and v * a < 0.0 and abs(v) < abs(a) * t:
+        turn = x - 0.5 * v * v / a
         low, high = min(low, turn), max(high, turn)
     return low, high
 
 
-@function
-def time_in_scene(extent: float, x: float, y: float, vx: float, vy: float, gx: Feature, gy: Feature) -> float:
-    """A duration [s] after which a free flight has fallen below everything in the scene for good.
+def _for_ever(flight: Flight, extent: float) -> float:
+    return math.inf
+
+
+@where("ax", otherwise=_for_ever)
+def time_in_scene(flight: Flight, extent: float) -> float:
+    """Return a duration [s] after which a free flight has fallen below everything in the scene for good.
 
     inf without gravity. It gives the searches of an unbounded flight an end.
     """
-    if gx is None:
-        return math.inf
-    g = magnitude(gx, gy)
+    g = magnitude(flight.ax, flight.ay)
     if g == 0.0:
         return math.inf
-    nx, ny = gx / g, gy / g
+    nx, ny = flight.ax / g, flight.ay / g
     # Nothing of the scene is further than 2 extent along any direction.
-    room = max(2.0 * extent - (x * nx + y * ny), 0.0)
-    speed = vx * nx + vy * ny
+    room = max(2.0 * extent - (flight.x * nx + flight.y * ny), 0.0)
+    speed = flight.vx * nx + flight.vy * ny
     root = math.sqrt(speed * speed + 2.0 * g * room)
     # The form that adds two terms of one sign: along a wall next to nothing of gravity may be left.
     return 2.0 * room / (root + speed) if speed > 0.0 else (root - speed) / g
 
 
 @function
-def touch_tolerance(extent: float, vx: float, vy: float, gx: Feature, gy: Feature, t: float) -> float:
-    """What counts as touching [m] after a flight of `t` seconds: rounding of the lengths that entered its end."""
-    return ULPS_OF_LENGTH * (extent + (abs(vx) + abs(vy) + magnitude(gx, gy) * t) * t)
+def path_bound(flight: Flight, t: float) -> float:
+    """Return a length [m] that the path of the next `t` seconds does not exceed."""
+    return (abs(flight.vx) + abs(flight.vy) + magnitude(flight.ax, flight.ay) * t) * t
 
 
 @function
-def fly(ball: Record, gx: Feature, gy: Feature, t: float, hi: float, lo: float) -> None:
-    """Move the ball along its flight by `t` seconds and let that be where, at (hi, lo), a new one starts."""
-    ball.x, ball.y = moved(ball.x, ball.vx, gx, t), moved(ball.y, ball.vy, gy, t)
-    ball.vx, ball.vy = sped(ball.vx, gx, t), sped(ball.vy, gy, t)
+def touch_tolerance(flight: Flight, extent: float, t: float) -> float:
+    """Return what counts as touching [m] after `t` seconds: the rounding of the lengths that went into it."""
+    return ULPS_OF_LENGTH * (extent + path_bound(flight, t))
+
+
+@function
+def fly(ball: Record, flight: Flight, t: float, hi: float, lo: float) -> None:
+    """Move the ball along its flight by `t` seconds and let a new one start there, at the instant (hi, lo)."""
+    ball.x, ball.y = place_after(flight, t)
+    ball.vx, ball.vy = velocity_after(flight, t)
     ball.hi, ball.lo = hi, lo
 
 
 @function
-def slow_on_circle(vx: float, vy: float, reach: float, slack: float) -> float:
-    """Closing slower than this [m/s] is no hit of a circle: the rounding of the velocity and of the normal."""
-    return (ULPS_OF_SPEED + slack / reach) * (abs(vx) + abs(vy))
+def slow_on_circle(flight: Flight, reach: float, slack: float) -> float:
+    """Return the speed [m/s] below which closing on a circle is no hit: the rounding of velocity and normal."""
+    return (ULPS_OF_SPEED + slack / reach) * (abs(flight.vx) + abs(flight.vy))
 
 
 @function
-def bending(x: float, y: float, vx: float, vy: float, ax: Feature, ay: Feature) -> float:
-    """Second derivative [m/s^2] of the distance from the origin."""
-    distance = math.sqrt(x * x + y * y)
-    across = (x * vy - y * vx) / distance
-    turn = across * across / distance
-    if ax is None:
-        return turn
-    return turn + (x * ax + y * ay) / distance
+def _turning(flight: Flight) -> float:
+    distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
+    across = (flight.x * flight.vy - flight.y * flight.vx) / distance
+    return across * across / distance
+
+
+@where("ax", otherwise=_turning)
+def bending(flight: Flight) -> float:
+    """Return the second derivative [m/s^2] of the distance from the origin."""
+    distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
+    return _turning(flight) + (flight.x * flight.ax + flight.y * flight.ay) / distance
 
 
 @function
 def grazes(closing_square: float, opening: float, depth: float) -> bool:
-    """Whether a ball comes no deeper than `depth` [m] into what it closes on, while its gap bends open.
+    """Return whether a ball comes no deeper than `depth` [m] into what it closes on, while its gap bends open.
 
-    closing_square: the square of how fast it closes in [m^2/s^2]. opening: the gap's second derivative [m/s^2].
-    Such a touch in passing is told where the path is nearest, after closing / opening seconds: nothing closes there, so
-    there is no bounce, but all that the ball touches is seen, as where a wall goes on smoothly as an arc.
+    closing_square: the square of how fast it closes [m^2/s^2]. opening: the gap's second derivative [m/s^2]. The
+    instant of such a touch in passing is where the path is nearest, after closing / opening seconds: nothing closes
+    there, so that there is no bounce, but all that the ball touches is seen, as where a wall goes on as a tangent arc.
     """
     return closing_square < 2.0 * opening * depth

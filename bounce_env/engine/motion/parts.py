@@ -6,78 +6,116 @@ at a speed that is constant between commands and stops; or it is a wall, both en
 """
 
 import math
+from typing import NamedTuple
 
-from bounce_env.engine.compile.jit import Record, function
-from bounce_env.engine.memory.lookup import is_dragged
+from bounce_env.engine.compile.jit import Record, function, unfolded, where
+from bounce_env.engine.memory.lookup import ends_of, turn_of
+from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.dragged_wall import line_at, velocity_on
 from bounce_env.engine.motion.instant import later, since
 from bounce_env.engine.motion.sincos import sin_cos
 
 
+class MovingPart(NamedTuple):
+    """A part of one world: what it is, its present motion, and what only flippers and dragged walls have."""
+
+    shape: Record  # PART
+    motion: Record  # MOTION
+    turn: int  # which way it turns, 1 or -1; 0 where it slides or is dragged
+    ends: Record  # ENDS; None: nothing is dragged in any scene
+
+
+class Core(NamedTuple):
+    """Where a part is: from (x, y) [m] its core runs from `back` to `front` [m] along the unit vector (ux, uy)."""
+
+    x: float
+    y: float
+    ux: float
+    uy: float
+    back: float
+    front: float
+
+
+@unfolded
+def moving_part(state: State, w: int, m: int) -> MovingPart:
+    """Return part `m` of world `w`, for what is compiled only where there are parts."""
+    scene = state.worlds[w].scene
+    return MovingPart(state.parts[scene, m], state.motions[w, m], turn_of(state, scene, m), ends_of(state, w, m))
+
+
+@where("ends", otherwise=False)
+def is_dragged(part: MovingPart) -> bool:
+    """Return whether a part is a wall that is dragged by its ends."""
+    return part.shape.span == 0.0
+
+
 @function
 def offset_at(motion: Record, hi: float, lo: float) -> float:
-    """Where on its way [m or rad] a part is at an instant of its present motion."""
+    """Return where on its way [m or rad] a part is at an instant of its present motion."""
     return motion.offset + motion.velocity * since(hi, lo, motion.hi, motion.lo)
 
 
 @function
-def kept_offset(motion: Record, part: Record, hi: float, lo: float) -> float:
-    """The same, without the rounding by which it may lie beyond a stop."""
-    return min(max(offset_at(motion, hi, lo), 0.0), part.span)
+def kept_offset(motion: Record, shape: Record, hi: float, lo: float) -> float:
+    """Return the same, without the rounding by which it may lie beyond a stop."""
+    return min(max(offset_at(motion, hi, lo), 0.0), shape.span)
 
 
 @function
-def surface_velocity(
-    motion: Record, part: Record, turn: int, ends: Record, ux: float, uy: float, front: float, rx: float, ry: float
-) -> tuple[float, float]:
-    """Velocity [m/s] of a point of a part, at (rx, ry) [m] from where `core_at` says that it is.
-
-    The core lies along u, up to `front` [m].
-    """
-    if ends is not None and is_dragged(ends, part):
-        return velocity_on(ends, min(max((rx * ux + ry * uy) / front, 0.0), 1.0))
-    if turn != 0:
-        spin = turn * motion.velocity
+def _capsule_velocity(part: MovingPart, core: Core, rx: float, ry: float) -> tuple[float, float]:
+    if part.turn != 0:
+        spin = part.turn * part.motion.velocity
         return -spin * ry, spin * rx
-    return motion.velocity * ux, motion.velocity * uy
+    return part.motion.velocity * core.ux, part.motion.velocity * core.uy
+
+
+@where("ends", otherwise=_capsule_velocity)
+def surface_velocity(part: MovingPart, core: Core, rx: float, ry: float) -> tuple[float, float]:
+    """Return the velocity [m/s] of a point of a part, at (rx, ry) [m] from the (x, y) of its core."""
+    if is_dragged(part):
+        return velocity_on(part.ends, min(max((rx * core.ux + ry * core.uy) / core.front, 0.0), 1.0))
+    return _capsule_velocity(part, core, rx, ry)
 
 
 @function
-def spin_of(
-    motion: Record, part: Record, turn: int, ends: Record, ux: float, uy: float, front: float
-) -> tuple[float, bool]:
-    """How fast [rad/s] a part turns now, and whether it turns or stretches: its surface does not move as one.
+def _capsule_spin(part: MovingPart, core: Core) -> tuple[float, bool]:
+    return part.turn * part.motion.velocity, part.turn != 0 and part.motion.velocity != 0.0
 
-    The core lies along u, up to `front` [m].
-    """
-    if ends is not None and is_dragged(ends, part):
-        spin = ((ends.vy1 - ends.vy0) * ux - (ends.vx1 - ends.vx0) * uy) / front
+
+@where("ends", otherwise=_capsule_spin)
+def spin_of(part: MovingPart, core: Core) -> tuple[float, bool]:
+    """Return how fast [rad/s] a part turns, and whether it turns or stretches: its surface does not move as one."""
+    if is_dragged(part):
+        ends = part.ends
+        spin = ((ends.vy1 - ends.vy0) * core.ux - (ends.vx1 - ends.vx0) * core.uy) / core.front
         return spin, ends.vx0 != ends.vx1 or ends.vy0 != ends.vy1
-    return turn * motion.velocity, turn != 0 and motion.velocity != 0.0
+    return _capsule_spin(part, core)
 
 
 @function
-def core_at(
-    part: Record, motion: Record, turn: int, ends: Record, hi: float, lo: float
-) -> tuple[float, float, float, float, float, float]:
-    """Where a part is at an instant of its present motion.
+def _capsule_core(part: MovingPart, hi: float, lo: float) -> Core:
+    shape, offset = part.shape, offset_at(part.motion, hi, lo)
+    if part.turn != 0:
+        s, c = sin_cos(part.turn * offset)
+        ux, uy = shape.ux * c - shape.uy * s, shape.ux * s + shape.uy * c
+        return Core(shape.x, shape.y, ux, uy, shape.back, shape.front)
+    x, y = shape.x + offset * shape.ux, shape.y + offset * shape.uy
+    return Core(x, y, shape.ux, shape.uy, shape.back, shape.front)
 
-    A point (x, y) [m], the unit vector along its core, and where [m] the core begins and ends along that, from (x, y).
-    """
-    if ends is not None and is_dragged(ends, part):
-        x, y, ux, uy, length = line_at(ends, since(hi, lo, motion.hi, motion.lo))
-        return x, y, ux, uy, 0.0, length
-    offset = offset_at(motion, hi, lo)
-    if turn != 0:
-        s, c = sin_cos(turn * offset)
-        return part.x, part.y, part.ux * c - part.uy * s, part.ux * s + part.uy * c, part.back, part.front
-    return part.x + offset * part.ux, part.y + offset * part.uy, part.ux, part.uy, part.back, part.front
+
+@where("ends", otherwise=_capsule_core)
+def core_at(part: MovingPart, hi: float, lo: float) -> Core:
+    """Return where a part is at an instant of its present motion."""
+    if is_dragged(part):
+        x, y, ux, uy, length = line_at(part.ends, since(hi, lo, part.motion.hi, part.motion.lo))
+        return Core(x, y, ux, uy, 0.0, length)
+    return _capsule_core(part, hi, lo)
 
 
 @function
-def stop_instant(motion: Record, part: Record) -> tuple[float, float]:
-    """Instant at which the part's present motion ends at a stop: (hi, lo), inf if it stands."""
+def stop_instant(motion: Record, shape: Record) -> tuple[float, float]:
+    """Return the instant at which a part's present motion ends at a stop: (hi, lo), inf if it stands."""
     if motion.velocity == 0.0:
         return math.inf, 0.0
-    room = part.span - motion.offset if motion.velocity > 0.0 else motion.offset
+    room = shape.span - motion.offset if motion.velocity > 0.0 else motion.offset
     return later(motion.hi, motion.lo, room / abs(motion.velocity))

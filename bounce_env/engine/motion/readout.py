@@ -2,41 +2,49 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function, kernel
-from bounce_env.engine.memory.lookup import ends_of, pull, turn_of
+from bounce_env.engine.compile.jit import function, kernel, where
 from bounce_env.engine.memory.records import OUT, Array
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import moved, sped
+from bounce_env.engine.motion.flight import flight_of, place_after, velocity_after
 from bounce_env.engine.motion.instant import since
-from bounce_env.engine.motion.parts import core_at
+from bounce_env.engine.motion.parts import core_at, moving_part, offset_at
 
 
 @function
 def ball_now(state: State, w: int, k: int) -> tuple[float, float, float, float]:
-    """Where ball `k` is now and how fast: (x, y, vx, vy). A drained ball stays where it crossed."""
+    """Return where ball `k` is now and how fast: (x, y, vx, vy). A drained ball stays where it crossed the drain."""
     ball, world = state.balls[w, k], state.worlds[w]
     if ball.status == OUT:
         return ball.x, ball.y, ball.vx, ball.vy
-    gx, gy = pull(state.gravity, ball)
-    t = since(world.time_hi, world.time_lo, ball.hi, ball.lo)
+    flight, t = flight_of(state, ball), since(world.time_hi, world.time_lo, ball.hi, ball.lo)
+    x, y = place_after(flight, t)
+    vx, vy = velocity_after(flight, t)
+    return x, y, vx, vy
+
+
+@where("parts", otherwise=(math.nan, math.nan, math.nan, math.nan))
+def core_now(state: State, w: int, m: int) -> tuple[float, float, float, float]:
+    """Return where the two ends of part `m`'s core are now: x, y, x, y [m]; NaN where there are no parts."""
+    world = state.worlds[w]
+    core = core_at(moving_part(state, w, m), world.time_hi, world.time_lo)
     return (
-        moved(ball.x, ball.vx, gx, t),
-        moved(ball.y, ball.vy, gy, t),
-        sped(ball.vx, gx, t),
-        sped(ball.vy, gy, t),
+        core.x + core.back * core.ux,
+        core.y + core.back * core.uy,
+        core.x + core.front * core.ux,
+        core.y + core.front * core.uy,
     )
 
 
-@function
-def core_now(
-    motions: Table, parts: Table, turns: Table, ends: Table, w: int, world: Record, m: int
-) -> tuple[float, float, float, float]:
-    """Where the two ends of part `m`'s core are now: x, y, x, y [m]; NaN where there are no parts."""
-    if motions is None or parts is None:
-        return math.nan, math.nan, math.nan, math.nan
-    part, turn = parts[world.scene, m], turn_of(turns, world.scene, m)
-    x, y, ux, uy, back, front = core_at(part, motions[w, m], turn, ends_of(ends, w, m), world.time_hi, world.time_lo)
-    return x + back * ux, y + back * uy, x + front * ux, y + front * uy
+@where("parts", otherwise=0.0)
+def offset_now(state: State, w: int, m: int) -> float:
+    """Return where part `m` is on its way now, from its first stop: [m], or [rad] of a flipper."""
+    return offset_at(state.motions[w, m], state.worlds[w].time_hi, state.worlds[w].time_lo)
+
+
+@where("parts", otherwise=0.0)
+def stroke_now(state: State, w: int, m: int) -> float:
+    """Return the same as a share of the way from stop to stop; rounding may leave it just beyond 0 or 1."""
+    return offset_now(state, w, m) / state.parts[state.worlds[w].scene, m].span
 
 
 @kernel
@@ -45,6 +53,4 @@ def view(state: State, w: int, balls: Array, cores: Array) -> None:
     for k in range(balls.shape[0]):
         balls[k, 0], balls[k, 1], balls[k, 2], balls[k, 3] = ball_now(state, w, k)
     for m in range(cores.shape[0]):
-        cores[m, 0], cores[m, 1], cores[m, 2], cores[m, 3] = core_now(
-            state.motions, state.parts, state.turns, state.ends, w, state.worlds[w], m
-        )
+        cores[m, 0], cores[m, 1], cores[m, 2], cores[m, 3] = core_now(state, w, m)

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agents.task import Player, Task
-from bounce_env.games.clone import States
+from bounce_env.games.state_copy import States
 
 
 class LookAhead:

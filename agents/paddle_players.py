@@ -11,7 +11,7 @@ from agents.command import Refused
 from agents.look_ahead import LookAhead
 from agents.task import Player, Task
 from bounce_env.games.episode import FPS
-from bounce_env.games.paddle_rules import REFERENCE_SPEED, field_of
+from bounce_env.games.paddle.setup import REFERENCE_SPEED, field_of
 from bounce_env.scene import Paddle, Scene, Wall
 
 Floats = npt.NDArray[np.float64]

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from agents.look_ahead import LookAhead
 from agents.task import Player, Task
 from bounce_env.games.episode import FPS
-from bounce_env.games.pinball import LEFT, REFERENCE_SPEED, RIGHT
-from bounce_env.games.table import outline, word_of
+from bounce_env.games.pinball.observe import REFERENCE_SPEED
+from bounce_env.games.pinball.setup import LEFT, RIGHT, outline, word_of
 from bounce_env.scene import Flipper, Scene
 
 UP, DOWN = 3, 5  # steps that a flailing flipper is up and down

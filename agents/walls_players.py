@@ -11,7 +11,7 @@ import numpy.typing as npt
 from agents.look_ahead import LookAhead
 from agents.task import Player, Task
 from bounce_env.games.episode import FPS
-from bounce_env.games.walls_rules import CONTROLS, REFERENCE_SPEED, WALL_SPEED, dragged_wall, field_of, longest
+from bounce_env.games.walls.setup import CONTROLS, REFERENCE_SPEED, WALL_SPEED, dragged_wall, field_of, longest
 from bounce_env.scene import Scene
 
 Floats = npt.NDArray[np.float64]

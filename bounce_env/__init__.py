@@ -7,10 +7,11 @@ when it is used.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from bounce_env.registration import register_all
+from bounce_env.registration import register, register_all
 
 if TYPE_CHECKING:
-    from bounce_env.engine.world import World
+    from bounce_env.engine import EventKind, Status, World, WorldBatch
+    from bounce_env.envs import PaddleEnv, PinballEnv, WallsEnv
     from bounce_env.scene import (
         Arc,
         Ball,
@@ -42,27 +43,35 @@ _SCENE = (
     "load_scene",
 )
 _HOME = {
-    "World": "bounce_env.engine.world",
-    "load_agent": "bounce_env.trained",
     **dict.fromkeys(_SCENE, "bounce_env.scene"),
+    **dict.fromkeys(("EventKind", "Status", "World", "WorldBatch"), "bounce_env.engine"),
+    **dict.fromkeys(("PaddleEnv", "PinballEnv", "WallsEnv"), "bounce_env.envs"),
+    "load_agent": "bounce_env.trained",
 }
 
 __all__ = [
     "Arc",
     "Ball",
     "Bumper",
+    "EventKind",
     "Field",
     "Flipper",
     "Paddle",
+    "PaddleEnv",
+    "PinballEnv",
     "Scene",
     "SceneError",
     "Sensor",
+    "Status",
     "Wall",
+    "WallsEnv",
     "World",
+    "WorldBatch",
     "__version__",
     "builtin_scenes",
     "load_agent",
     "load_scene",
+    "register",
 ]
 
 

@@ -17,11 +17,11 @@ try:
 except ModuleNotFoundError as error:
     raise missing("sb3", str(error.name), "BounceVecEnv needs") from error
 
-from bounce_env.env import checked_seed
-from bounce_env.games.clone import States
-from bounce_env.games.start import checked_options
-from bounce_env.one_world import OneWorld, row_of
-from bounce_env.vector import BounceVectorEnv
+from bounce_env.envs.base import checked_seed
+from bounce_env.envs.one_world import OneWorld, row_of
+from bounce_env.envs.vector import BounceVectorEnv
+from bounce_env.games.reset_options import checked_options
+from bounce_env.games.state_copy import States
 from bounce_env.wording import shown, whole
 
 # SB3's rollouts need a reset in the same step and observations of their own.

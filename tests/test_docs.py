@@ -9,7 +9,9 @@ import pytest
 import yaml
 
 import bounce_env
-from bounce_env.cards import PaddleEnv, PinballEnv, WallsEnv
+from bounce_env.envs.paddle import PaddleEnv
+from bounce_env.envs.pinball import PinballEnv
+from bounce_env.envs.walls import WallsEnv
 from bounce_env.extras import version
 
 ROOT = Path(bounce_env.__file__).parent.parent

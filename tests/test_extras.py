@@ -149,15 +149,15 @@ def test_pytorch_for_the_cpu_is_named_where_it_is_needed():
 
 
 def test_the_cards_are_there_without_an_import_of_their_own():
-    code = "import bounce_env; print(bounce_env.cards.PaddleEnv.__name__)"
+    code = "import bounce_env; print(bounce_env.PaddleEnv.__name__, bounce_env.cards.PaddleEnv is bounce_env.PaddleEnv)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "PaddleEnv\n"
+    assert done.stdout == "PaddleEnv True\n"
 
 
 def test_a_window_that_nobody_can_see_is_said(monkeypatch):
     import gymnasium as gym
 
-    from bounce_env import env as module
+    from bounce_env.envs import base as module
 
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     monkeypatch.setattr(module, "display_problem", lambda: "there is no display")

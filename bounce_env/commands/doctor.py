@@ -50,7 +50,7 @@ def _processor() -> str:
 
 
 def _cache() -> str:
-    from bounce_env.engine.compile.jit import cache_folder  # noqa: PLC0415
+    from bounce_env.engine.compile.cache import cache_folder  # noqa: PLC0415
     from bounce_env.engine.world_kernels import advance_to  # noqa: PLC0415
 
     folder = cache_folder(advance_to)

@@ -103,7 +103,7 @@ class Play:
 
     Arrow keys or A and D move; in games with flippers they, or left and right shift, press the left and the right one,
     and with --nudge Z and X shove the table. P pauses, R begins anew, V starts and stops a film, Esc or Q quits.
-    The other options are keywords of the games, see help(bounce_env.cards); left out they are the game's.
+    The other options are keywords of the games, see help(bounce_env.PinballEnv); left out they are the game's.
     """
 
     game: Annotated[str, tyro.conf.Positional]

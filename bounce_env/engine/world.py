@@ -76,13 +76,28 @@ class World:
         self._started = True
 
     def advance(self, seconds: float, *, ledger: bool = False, max_events: int = MAX_EVENTS) -> npt.NDArray[Any] | None:
-        """Let `seconds` pass, 0 to 1e15, or up to `max_events` >= 1 events (then `status` is BUDGET, `time` is that of
-        the last event, and the next call goes on from there). Sensor crossings and stops of parts are events, too.
+        """Let `seconds` pass; return the ledger of this call if asked for, otherwise None.
 
-        All that happens to a ball at one instant is one event of the budget.
+        seconds: 0 to 1e15. max_events: 1 or more; when so many events have been processed `status` is BUDGET, `time`
+        is that of the last event, and the next call goes on from there. All that happens to a ball at one instant is
+        one event of the budget; sensor crossings and stops of parts are events, too.
 
-        Returns the ledger of this call if asked for: a structured array (fields: `engine.memory.records.LEDGER`), one
-        row an event in order of time; design.md, "Ledger". Raises ValueError for arguments that are not allowed.
+        The ledger is a structured array, one row an event, in order of time:
+
+        | column | what it tells |
+        | --- | --- |
+        | `time` | seconds since reset |
+        | `ball` | index of the ball; -1 where a part stops |
+        | `element` | index in `scene.elements`; of another ball len(scene.elements) + its index |
+        | `kind` | an `EventKind`: 0 bounce, 1 contact begins, 2 contact ends, 3 sensor, 4 part stops, 5 crushed |
+        | `x`, `y` | centre of the ball, of a part that stops a point on it [m] |
+        | `nx`, `ny` | unit normal from the element to the ball; at a sensor, to where the ball came from |
+        | `vx0`, `vy0`, `vx1`, `vy1` | velocity before and after [m/s] |
+        | `ux`, `uy` | velocity of the surface where it was touched [m/s], before the bounce |
+
+        Two balls that hit each other give two rows; a dragged wall that stops gives one for each end. Asking for the
+        ledger changes no bit of the motion. Raises ValueError for arguments that are not allowed, RuntimeError before
+        the first reset.
         """
         self._check_started()
         seconds = real("seconds", seconds, 0.0, LARGEST, f"finite and >= 0, at most {LARGEST:g}")
@@ -272,7 +287,7 @@ class World:
 
     @property
     def status(self) -> npt.NDArray[np.int64]:
-        """One of OK, BUDGET, CRUSHED, OUT (`engine.memory.records`) for each ball, shape (balls,)."""
+        """The `Status` of each ball, shape (balls,) int64."""
         self._check_started()
         return np.array([ball.status for ball in self._state.balls[0]], np.int64)
 

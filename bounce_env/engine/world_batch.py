@@ -1,4 +1,4 @@
-"""Worlds: many worlds side by side, without the games: for measuring, for tests, for whoever needs only the physics."""
+"""WorldBatch: many worlds side by side, without the games: for measuring, tests, and whoever needs only the physics."""
 
 from collections.abc import Sequence
 
@@ -39,7 +39,7 @@ def _advance(state: State, seconds: float, max_events: int) -> int:
     return unfinished
 
 
-class Worlds:
+class WorldBatch:
     """One world per entry of `scene_of`, each with one ball, in one of `scenes`.
 
     All scenes run through the kernel of the features that any of them has; the result is that of `World`, to the bit.
@@ -82,7 +82,7 @@ class Worlds:
 
     @property
     def status(self) -> Array:
-        """OK, BUDGET, CRUSHED or OUT (`engine.memory.records`) of every world's ball, shape (worlds,)."""
+        """The `Status` of every world's ball, shape (worlds,)."""
         return self.state.balls["status"][:, 0].copy()
 
     @property

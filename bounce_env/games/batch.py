@@ -15,21 +15,21 @@ from bounce_env.engine.memory.records import Array
 from bounce_env.engine.memory.state import State, moving
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack
-from bounce_env.games.clone import States, check_rows, clone_rows, restore_rows
 from bounce_env.games.episode import (
     END_REASONS,
     EPISODE,
     SAME_STEP,
     TIME_LIMIT,
+    GameState,
     Results,
-    Worlds,
     bind,
     close_books,
     new_results,
 )
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
-from bounce_env.games.pace import NO_STEP_LIMIT
+from bounce_env.games.state_copy import States, check_rows, clone_rows, restore_rows
+from bounce_env.games.timing import NO_STEP_LIMIT
 from bounce_env.scene import Scene, Sensor
 from bounce_env.wording import shown
 
@@ -89,8 +89,8 @@ class Batch:
             self._handle = bind(self.rules, self._all())
         return self._handle
 
-    def _all(self) -> Worlds:
-        return Worlds(self.state, self.episodes, self.memory, self.held, self.counters, self._start, self.results)
+    def _all(self) -> GameState:
+        return GameState(self.state, self.episodes, self.memory, self.held, self.counters, self._start, self.results)
 
     def note_cut(self, world: int) -> None:
         """Let `end_info` tell of a world's episode as one that was cut by time, though its state goes on."""

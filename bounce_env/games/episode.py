@@ -56,7 +56,7 @@ class Results(NamedTuple):
     busy: Array  # (worlds,) uint64: the kernel's list of worlds in which something happens
 
 
-class Worlds(NamedTuple):
+class GameState(NamedTuple):
     """All that a game's kernels work on, beside its rules; first axis worlds."""
 
     state: State
@@ -81,17 +81,17 @@ class Handle(structref.StructRefProxy):  # type: ignore[misc]
         return structref.StructRefProxy.__new__(cls, *parts)
 
 
-structref.define_proxy(Handle, _HandleType, ["rules", "worlds"])
+structref.define_proxy(Handle, _HandleType, ["rules", "game"])
 
 
 @kernel
-def _bind_compiled(rules: Any, worlds: Worlds) -> Any:
-    return Handle(rules, worlds)
+def _bind_compiled(rules: Any, game: GameState) -> Any:
+    return Handle(rules, game)
 
 
-def bind(rules: Any, worlds: Worlds) -> Any:
+def bind(rules: Any, game: GameState) -> Any:
     """A handle to all that a game's kernels work on; it keeps the arrays alive."""
-    return SimpleNamespace(rules=rules, worlds=worlds) if numba.config.DISABLE_JIT else _bind_compiled(rules, worlds)
+    return SimpleNamespace(rules=rules, game=game) if numba.config.DISABLE_JIT else _bind_compiled(rules, game)
 
 
 def new_results(worlds: int, size: int, counters: int) -> Results:
@@ -109,39 +109,39 @@ def new_results(worlds: int, size: int, counters: int) -> Results:
 
 
 @function
-def begin_episode(worlds: Worlds, w: int) -> Record:
+def begin_episode(game: GameState, w: int) -> Record:
     """Give the next episode of world `w` its seed and clear its books."""
-    episode = worlds.episodes[w]
+    episode = game.episodes[w]
     episode.seed = bits(episode.world_seed, EPISODES, episode.episodes)
     episode.episodes += 1
     episode.frames, episode.steps, episode.rewards, episode.score = 0, 0, 0.0, 0.0
     episode.ball, episode.level, episode.end = 0, NO_LEVEL, RUNNING
-    for j in range(worlds.held.shape[1]):
-        worlds.held[w, j] = 0.0
-    for j in range(worlds.counters.shape[1]):
-        worlds.counters[w, j] = 0.0
+    for j in range(game.held.shape[1]):
+        game.held[w, j] = 0.0
+    for j in range(game.counters.shape[1]):
+        game.counters[w, j] = 0.0
     return episode
 
 
 @function
-def hold_action(worlds: Worlds, actions: Array, w: int, repeat: float) -> None:
+def hold_action(game: GameState, actions: Array, w: int, repeat: float) -> None:
     """Let the action of this step be in force, or, with the probability `repeat` per frame, go on with the last one."""
-    episode = worlds.episodes[w]
+    episode = game.episodes[w]
     if repeat == 0.0 or uniform(episode.seed, STICKY_ACTIONS, episode.frames) >= repeat:
-        for j in range(worlds.held.shape[1]):
-            worlds.held[w, j] = actions[w, j]
+        for j in range(game.held.shape[1]):
+            game.held[w, j] = actions[w, j]
 
 
 @function
-def close_books(worlds: Worlds, w: int) -> None:
+def close_books(game: GameState, w: int) -> None:
     """Note how the episode of world `w` ended, before anything of it is reset."""
-    ended, episode, world = worlds.results.ended[w], worlds.episodes[w], worlds.state.worlds[w]
+    ended, episode, world = game.results.ended[w], game.episodes[w], game.state.worlds[w]
     ended.seconds, ended.score = episode.frames / FPS, episode.score
     ended.steps, ended.rewards = episode.steps, episode.rewards
     ended.ball, ended.level, ended.end = episode.ball, episode.level, episode.end
     ended.bounces, ended.speed_capped = world.bounces, world.speed_capped
-    for j in range(worlds.counters.shape[1]):
-        worlds.results.counted[w, j] = worlds.counters[w, j]
+    for j in range(game.counters.shape[1]):
+        game.results.counted[w, j] = game.counters[w, j]
 
 
 @function

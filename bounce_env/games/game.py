@@ -26,6 +26,7 @@ class Game:
     hidden: the elements that pictures do not show: what only the rules or the builder of the table look at.
     """
 
+    options_type: ClassVar[type[Options]]  # what its user may choose
     counted: ClassVar[str]  # what the score counts, in words
     counters: ClassVar[tuple[str, ...]]  # what is told at an episode's end of what the game has counted
     memory: ClassVar[np.dtype[Any] | None] = None  # what its rules remember of a world

@@ -15,7 +15,7 @@ from bounce_env.games.episode import (
     RUNNING,
     SAME_STEP,
     TIME_LIMIT,
-    Worlds,
+    GameState,
     close_books,
     open_books,
 )
@@ -23,36 +23,36 @@ from bounce_env.games.rules import of_game
 
 
 @of_game
-def begin(rules: Any, worlds: Worlds, w: int) -> None:
+def begin(rules: Any, game: GameState, w: int) -> None:
     """See `games.rules`."""
 
 
 @of_game
-def play(rules: Any, worlds: Worlds, actions: Array, w: int) -> float:
-    """See `games.rules`."""
-    raise NotImplementedError
-
-
-@of_game
-def glide(rules: Any, worlds: Worlds, actions: Array, w: int) -> bool:
+def play(rules: Any, game: GameState, actions: Array, w: int) -> float:
     """See `games.rules`."""
     raise NotImplementedError
 
 
 @of_game
-def observe(rules: Any, worlds: Worlds, w: int, out: Array) -> None:
+def step_quietly(rules: Any, game: GameState, actions: Array, w: int) -> bool:
+    """See `games.rules`."""
+    raise NotImplementedError
+
+
+@of_game
+def observe(rules: Any, game: GameState, w: int, out: Array) -> None:
     """See `games.rules`."""
 
 
 @kernel
 def reset_worlds(handle: Any, mask: Array) -> None:
     """Begin an episode in every world that `mask` names, launched as `handle.start` says."""
-    worlds, rules = borrow(handle.worlds), borrow(handle.rules)
-    results = worlds.results
+    game, rules = borrow(handle.game), borrow(handle.rules)
+    results = game.results
     for w in range(mask.shape[0]):
         if mask[w]:
-            begin(rules, worlds, w)
-            observe(rules, worlds, w, results.observations)
+            begin(rules, game, w)
+            observe(rules, game, w, results.observations)
             results.terminated[w] = False
             results.truncated[w] = False
             results.rewards[w] = 0.0
@@ -66,8 +66,8 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
     whose episode has ended is reset in place of a step (NEXT_STEP), was reset at its end (SAME_STEP), or must have been
     reset by the caller (DISABLED).
     """
-    worlds, rules = borrow(handle.worlds), borrow(handle.rules)
-    results, episodes = worlds.results, worlds.episodes
+    game, rules = borrow(handle.game), borrow(handle.rules)
+    results, episodes = game.results, game.episodes
     if not _all_finite(actions):
         return -1
     results.rewards[first:last] = 0.0
@@ -76,18 +76,18 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
     busy = first
     # Of an unsigned index Numba does not ask whether it counts from the end.
     for w in range(np.uint64(first), np.uint64(last)):
-        if not glide(rules, worlds, actions, w):
+        if not step_quietly(rules, game, actions, w):
             results.busy[busy] = w
             busy += 1
     ended = 0
     for i in range(first, busy):
         w = results.busy[i]
         if autoreset == NEXT_STEP and episodes[w].end != RUNNING:
-            begin(rules, worlds, w)
-            observe(rules, worlds, w, results.observations)
+            begin(rules, game, w)
+            observe(rules, game, w, results.observations)
             open_books(results, w)
             continue
-        results.rewards[w] = play(rules, worlds, actions, w)
+        results.rewards[w] = play(rules, game, actions, w)
         episodes[w].rewards += results.rewards[w]
         if results.ended[w].end != RUNNING:
             open_books(results, w)
@@ -96,15 +96,15 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
         # What ends in the last step that there may be is truncated, too, as by Gymnasium's TimeLimit.
         last = end != RUNNING and episodes[w].steps >= rules.pace.steps
         results.truncated[w] = last or end in (TIME_LIMIT, OUT_OF_BUDGET)
-        observe(rules, worlds, w, results.observations)
+        observe(rules, game, w, results.observations)
         if end != RUNNING:
             ended += 1
-            close_books(worlds, w)
+            close_books(game, w)
             if autoreset == SAME_STEP:
                 for j in range(results.observations.shape[1]):
                     results.final_observations[w, j] = results.observations[w, j]
-                begin(rules, worlds, w)
-                observe(rules, worlds, w, results.observations)
+                begin(rules, game, w)
+                observe(rules, game, w, results.observations)
     return ended
 
 

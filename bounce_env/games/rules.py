@@ -1,32 +1,52 @@
 """How one kernel steps every game: what a game does is chosen, when the kernel is compiled, by the type of its rules.
 
-A game is a NamedTuple type of rules (all that its functions need to know beside the scene) with four functions:
+A game's rules are a NamedTuple type of their own (all that its functions need to know beside the scene) with a `pace`,
+and these compiled functions:
 
-* `begin(rules, worlds, w)`: the next episode of world `w` begins;
-* `play(rules, worlds, actions, w)`: one step; sets the episode's `end` where it ends, returns the reward;
-* `glide(rules, worlds, actions, w)`: the same where surely nothing happens; or does nothing, returns False;
-* `observe(rules, worlds, w, out)`: what an agent sees, into `out[w]`.
+* `begin(rules, game, w)`: the next episode of world `w` begins;
+* `play(rules, game, actions, w)`: one step; sets the episode's `end` where it ends, returns the reward;
+* `observe(rules, game, w, out)`: what an agent sees, into `out[w]`;
+* `step_quietly(rules, game, actions, w)`, which may be left out: the step of a world in which surely nothing happens;
+  or it does nothing and returns False.
 """
 
 import functools
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 from numba.extending import overload
 
-from bounce_env.engine.compile.jit import INLINED
+from bounce_env.engine.compile.cache import follow_sources
+from bounce_env.engine.compile.jit import INLINED, interpreted
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-NAMES = ("begin", "play", "glide", "observe")
+Functions = dict[str, Callable[..., Any]]
 
-_games: dict[type, dict[str, Callable[..., Any]]] = {}
+_games: dict[type, Functions] = {}
 
 
-def is_game(rules: type, **functions: Callable[..., Any]) -> None:
-    """Let `functions`, one for each of NAMES, be what the game with this type of rules does."""
-    assert set(functions) == set(NAMES)
-    _games[rules] = {name: getattr(f, "py_func", f) for name, f in functions.items()}
+def define_game(
+    rules: type,
+    *,
+    begin: Callable[..., Any],
+    play: Callable[..., Any],
+    observe: Callable[..., Any],
+    step_quietly: Callable[..., bool] | None = None,
+) -> None:
+    """Let these functions, compiled by `engine.compile.jit.function`, be what the game with this type of rules does.
+
+    Of a game outside of the package the kernels that are kept on disk depend on the files that define the functions,
+    and those beside them.
+    """
+    functions = {"begin": begin, "play": play, "observe": observe, "step_quietly": step_quietly or _always_play}
+    _games[rules] = {name: interpreted(given) for name, given in functions.items()}
+    follow_sources(rules, {Path(given.__code__.co_filename) for given in _games[rules].values()})
+
+
+def _always_play(rules: Any, game: Any, actions: Any, w: int) -> bool:
+    return False
 
 
 def of_game(stub: F) -> F:
@@ -36,9 +56,9 @@ def of_game(stub: F) -> F:
     def chosen(rules: Any, *rest: Any) -> Callable[..., Any]:
         return _games[rules.instance_class][name]
 
-    def interpreted(rules: Any, *rest: Any) -> Any:
+    def python(rules: Any, *rest: Any) -> Any:
         return _games[type(rules)][name](rules, *rest)
 
-    functools.update_wrapper(interpreted, stub)
-    overload(interpreted, strict=False, jit_options=INLINED)(chosen)
-    return interpreted  # type: ignore[return-value]
+    functools.update_wrapper(python, stub)
+    overload(python, strict=False, jit_options=INLINED)(chosen)
+    return python  # type: ignore[return-value]

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from bounce_env.engine.packing import pack
 from bounce_env.games.episode import FPS
-from bounce_env.games.pace import MAX_EVENTS
+from bounce_env.games.timing import MAX_EVENTS
 from bounce_env.scene import Bumper, Scene
 from bounce_env.survey.follow import FATE, Fates, Watch, follow_balls
 from bounce_env.survey.inside import inside_of

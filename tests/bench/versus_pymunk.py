@@ -15,7 +15,8 @@ import pymunk
 from bounce_env import Bumper, Paddle, Wall, load_scene
 from bounce_env.games.batch import Batch
 from bounce_env.games.episode import NEXT_STEP
-from bounce_env.games.paddle import PaddleGame, PaddleOptions
+from bounce_env.games.paddle.game import PaddleGame
+from bounce_env.games.paddle.setup import PaddleOptions
 
 WORLDS = 1024
 STEP = 1.0 / 30.0

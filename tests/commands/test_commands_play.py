@@ -4,11 +4,13 @@ from dataclasses import fields
 
 import pytest
 
-from bounce_env.cards import PaddleEnv, PinballEnv, WallsEnv
 from bounce_env.commands import main, play
 from bounce_env.commands.games import game_id
 from bounce_env.commands.options import Play
 from bounce_env.commands.words import Refused
+from bounce_env.envs.paddle import PaddleEnv
+from bounce_env.envs.pinball import PinballEnv
+from bounce_env.envs.walls import WallsEnv
 
 
 @pytest.fixture(autouse=True)

@@ -8,7 +8,7 @@ from closed_scenes import closed_scene
 from conftest import soak_count
 
 from bounce_env import Ball, Bumper, Paddle, Scene, Sensor, Wall, World, load_scene
-from bounce_env.engine.world_batch import Worlds
+from bounce_env.engine.world_batch import WorldBatch
 from bounce_env.scene import Element
 
 PIECES = 256
@@ -55,7 +55,7 @@ def test_the_lean_kernel_and_the_general_one_agree(radius: float) -> None:
             lean = replace(closed.scene, elements=tuple(e for e in closed.scene.elements if isinstance(e, Wall)))
             starts = closed.starts(rng, count)
         full = Scene(gravity=(0.0, -1.0), ball=Ball(radius=radius), elements=(*lean.elements, *extras))
-        alone, mixed = Worlds([lean], np.zeros(count, int)), Worlds([lean, full], np.zeros(count, int))
+        alone, mixed = WorldBatch([lean], np.zeros(count, int)), WorldBatch([lean, full], np.zeros(count, int))
         for worlds in (alone, mixed):
             worlds.reset(*starts)
             worlds.advance(10.0)

@@ -6,7 +6,7 @@ from closed_scenes import closed_scene
 from conftest import soak_count
 
 from bounce_env.engine.memory.records import OK
-from bounce_env.engine.world_batch import Worlds
+from bounce_env.engine.world_batch import WorldBatch
 
 BALLS_PER_SCENE = soak_count(100, 1000)
 SECONDS = 10.0
@@ -23,7 +23,7 @@ def test_balls_stay_inside_and_keep_their_energy(radius: float, gravity: tuple[f
         while starts is None:
             closed = closed_scene(rng, radius, gravity)
             starts = closed.starts(rng, BALLS_PER_SCENE)
-        worlds = Worlds([closed.scene], np.zeros(BALLS_PER_SCENE, int))
+        worlds = WorldBatch([closed.scene], np.zeros(BALLS_PER_SCENE, int))
         worlds.reset(*starts)
         before = energy(worlds.balls, gravity)
         assert worlds.advance(SECONDS) == 0, closed.scene

@@ -57,7 +57,7 @@ def test_an_edit_elsewhere_compiles_nothing_anew(tmp_path: Path) -> None:
     """What no kernel is made of: of a game for the engine's kernels, of a card for any."""
     shutil.copytree(PACKAGE, tmp_path / "bounce_env", ignore=shutil.ignore_patterns("__pycache__"))
     assert run_in(tmp_path) == ["0", "1", "1.0"]
-    for name in ("games/paddle.py", "cards.py"):
+    for name in ("games/paddle/rules.py", "envs/paddle.py"):
         with (tmp_path / "bounce_env" / name).open("a") as file:
             file.write("# edited\n")
     assert run_in(tmp_path) == ["1", "0", "1.0"]

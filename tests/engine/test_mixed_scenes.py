@@ -11,7 +11,7 @@ from mixed_scenes import mixed_scene, start_in
 from bounce_env import Field, Scene
 from bounce_env.engine.memory.records import BUDGET, OK
 from bounce_env.engine.placement import gaps
-from bounce_env.engine.world_batch import Worlds
+from bounce_env.engine.world_batch import WorldBatch
 
 SECONDS = 20.0
 EVENTS = 400_000
@@ -45,7 +45,7 @@ def test_mixed_scenes(point: bool) -> None:
                 scenes.append(scene)
                 places.append(start[0])
                 speeds.append(start[1])
-        worlds = Worlds(scenes, np.arange(SCENES))
+        worlds = WorldBatch(scenes, np.arange(SCENES))
         worlds.reset(places, speeds)
         worlds.advance(SECONDS, EVENTS)
         balls, status = worlds.balls, worlds.status

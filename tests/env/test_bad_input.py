@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from rollouts import PADDLE, assert_same, make_vec
 
-from bounce_env.cards import PaddleEnv
-from bounce_env.vector import PaddleVectorEnv
+from bounce_env.envs.paddle import PaddleEnv, PaddleVectorEnv
 
 NAN, INF = float("nan"), float("inf")
 PYDANTICS = ["validation error", "input_value", "type=", "pydantic"]

@@ -15,7 +15,9 @@ from gymnasium.utils.env_checker import check_env
 from rollouts import PADDLE, PINBALL, WALLS, assert_same
 
 from bounce_env import load_scene
-from bounce_env.cards import PaddleEnv, PinballEnv, WallsEnv
+from bounce_env.envs.paddle import PaddleEnv
+from bounce_env.envs.pinball import PinballEnv
+from bounce_env.envs.walls import WallsEnv
 from bounce_env.scene import dump_scene, scene_to_dict
 
 NAMES = {PADDLE: "paddle", PINBALL: "pinball", WALLS: "walls"}

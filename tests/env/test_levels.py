@@ -10,12 +10,12 @@ from conftest import soak_count
 from rollouts import PADDLE, assert_same, make_vec, scripted
 
 from bounce_env import Bumper, load_scene
-from bounce_env.cards import PaddleEnv
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.packing import pack
-from bounce_env.games.levels import GAP, MOVING_FROM, RAIL, SPEED
-from bounce_env.games.options import PaddleOptions
-from bounce_env.games.paddle import PaddleGame
+from bounce_env.envs.paddle import PaddleEnv
+from bounce_env.games.paddle.game import PaddleGame
+from bounce_env.games.paddle.levels import GAP, MOVING_FROM, RAIL, SPEED
+from bounce_env.games.paddle.setup import PaddleOptions
 
 BASE = load_scene("paddle_levels")
 

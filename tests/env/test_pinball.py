@@ -9,8 +9,8 @@ import pytest
 from rollouts import assert_same
 
 from bounce_env import Scene, Sensor, Wall, load_scene
-from bounce_env.games import pinball, pinball_rules
-from bounce_env.games.table import layout_of, problems_of
+from bounce_env.games.pinball import setup
+from bounce_env.games.pinball.setup import layout_of, problems_of
 from bounce_env.render import Projection
 
 PINBALL = "Bounce/Pinball-v0"
@@ -80,7 +80,7 @@ def test_launches_depend_on_seed_and_ball_alone():
         env = begun(seed=seed)
         seen, ball = [], -1
         for _ in range(3000):
-            if int(env.unwrapped._batch.memory["serving"][0]) == pinball.SHOT:
+            if int(env.unwrapped._batch.memory["serving"][0]) == setup.SHOT:
                 seen.append(float(env.unwrapped._batch.state.balls[0, 0].vy))
             _, _, terminated, truncated, info = env.step(action)
             ball = max(ball, info["ball"])
@@ -242,7 +242,7 @@ def test_a_ball_held_for_two_seconds_is_let_go_until_it_has_left():
     assert len(gone) < 120
     until(env, lambda step: step[0][LEFT_UP] > 0.0, action=BOTH, steps=5)
     state = env.unwrapped._batch.counters[0]
-    assert state[pinball.HOLD_RELEASED] == 1
+    assert state[setup.HOLD_RELEASED] == 1
 
 
 def test_a_button_that_is_let_go_rests_for_three_tenths_of_a_second():
@@ -258,7 +258,7 @@ def test_a_button_that_is_let_go_rests_for_three_tenths_of_a_second():
     assert observation[LEFT_UP] == 0.0
     observation, *_ = env.step(BOTH)
     assert observation[LEFT_UP] > 0.4
-    assert env.unwrapped._batch.counters[0, pinball_rules.FLIPS] == 3
+    assert env.unwrapped._batch.counters[0, setup.FLIPS] == 3
 
 
 def cup():
@@ -274,7 +274,7 @@ def test_a_stuck_ball_is_shot_again_after_ten_seconds_and_counted():
     assert len(steps) >= 297
     until(env, lambda step: step[0][IDLE] == 0.0, steps=5)
     until(env, lambda step: step[0][Y] > 0.4, steps=3)
-    assert env.unwrapped._batch.counters[0, pinball.STUCK_FREED] == 1
+    assert env.unwrapped._batch.counters[0, setup.STUCK_FREED] == 1
     assert env.unwrapped._batch.episodes["ball"][0] == 0
 
 
@@ -298,7 +298,7 @@ def test_a_nudge_moves_the_ball_and_too_many_tilt_the_table():
     tilts = until(nudged, lambda step: step[0][TILT] == 1.0, action=4, steps=200)
     assert len(tilts) < 40
     observation, *_ = until(nudged, lambda step: step[2] or step[4]["ball"] == 1, action=BOTH, steps=900)[-1]
-    assert nudged.unwrapped._batch.counters[0, pinball.TILTS] == 1
+    assert nudged.unwrapped._batch.counters[0, setup.TILTS] == 1
     assert observation[TILT] < 1.0
 
 
@@ -357,7 +357,7 @@ def test_what_is_hit_counts_once_and_is_lit_until_the_step_ends():
     lit = env.render()
     env.step(NONE)
     later = env.render()
-    assert env.unwrapped._batch.counters[0, pinball_rules.BY_BUMPERS] == 50.0
+    assert env.unwrapped._batch.counters[0, setup.BY_BUMPERS] == 50.0
     projection = Projection.fit(TABLE.bounds)
     (left, top), (right, bottom) = projection.to_pixels([(x - 0.03, y), (x + 0.03, y - 0.03)])
     corner = np.s_[round(top) : round(bottom), round(left) : round(right)]

@@ -26,7 +26,7 @@ from test_pinball import (
 )
 
 from bounce_env.games.episode import FPS
-from bounce_env.games.pinball_rules import HOLD_FRAMES, NO, REST_FRAMES, SAVE_FRAMES, STUCK_FRAMES
+from bounce_env.games.pinball.setup import HOLD_FRAMES, NO, REST_FRAMES, SAVE_FRAMES, STUCK_FRAMES
 from bounce_env.scene import Flipper
 
 BOUNCES = 3  # after so many rounding may have grown to something

@@ -12,7 +12,7 @@ from rollouts import MODES, PADDLE, PINBALL, assert_same, make_sync, make_vec, s
 from stable_baselines3 import PPO
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
-from bounce_env import frames
+from bounce_env.envs import observations
 from bounce_env.registration import ENTRIES
 from bounce_env.render import Renderer
 from bounce_env.sb3 import BounceVecEnv
@@ -107,7 +107,7 @@ def test_a_batch_sees_what_single_environments_see(env_id, options, mode):
 
 
 def test_a_frame_shows_the_level_that_is_played(monkeypatch):
-    monkeypatch.setattr(frames, "_MOST_LEVELS", 2)
+    monkeypatch.setattr(observations, "_MOST_LEVELS", 2)
     env = gym.make(PADDLE, num_levels=20, **PIXELS, disable_env_checker=True).unwrapped
     levels = set()
     for seed in range(8):

@@ -270,7 +270,7 @@ def test_another_environment_is_refused_by_name(registered):
 
 
 def test_an_id_of_ones_own_with_our_entry_point_is_served(registered):
-    own = registered("Own/Paddle-v0", vector_entry_point="bounce_env.vector:PaddleVectorEnv", kwargs={"frame_skip": 6})
+    own = registered("Own/Paddle-v0", vector_entry_point="bounce_env.envs:PaddleVectorEnv", kwargs={"frame_skip": 6})
     assert BounceVecEnv(own, 2).metadata["render_fps"] == 10
 
 

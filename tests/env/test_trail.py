@@ -8,7 +8,7 @@ import pytest
 from rollouts import PADDLE, PINBALL, assert_same, make_vec
 
 from bounce_env import Flipper
-from bounce_env.way import Flight, Way
+from bounce_env.envs.trail import Flight, Way
 
 RADIUS = 0.02  # [m] of the paddle game's ball
 G = 1.5  # m/s^2

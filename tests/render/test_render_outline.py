@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bounce_env import Bumper, Scene, Sensor, Wall, load_scene
-from bounce_env.games.table import hidden_of
+from bounce_env.games.pinball.setup import hidden_of
 from bounce_env.render import Picture, Renderer
 from bounce_env.render.outline import clipped, islands, view_box
 

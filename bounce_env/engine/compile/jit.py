@@ -7,24 +7,20 @@
 * `fastmath` stays off: it would let the compiler change results from machine to machine;
 * `nogil`, and never `parallel=True`: threads run kernels over slices of a batch (a forked child survives that).
 
-Only entry points are cached on disk; what they call is compiled into them. Numba checks a cached binary against the
-one file that defines the entry point, so a change in a helper would leave it stale. Here a hash over all sources that
-can be compiled into a kernel is checked, too.
+Only entry points are cached on disk (`compile.cache`); what they call is compiled into them.
 """
 
 import functools
-import hashlib
-import logging
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 import numpy as np
-from numba.core import caching, cgutils
+from numba.core import cgutils
 from numba.core import types as nb_types
 from numba.extending import intrinsic, overload
 
+from bounce_env.engine.compile.cache import KernelCache, NoCache
 from bounce_env.engine.compile.pipeline import InnerCompiler, KernelCompiler
 
 Record = Any  # one record of a table or of the state, see `engine.memory.records`; compiled code changes it in place
@@ -43,98 +39,6 @@ INLINED = {
     "_nrt": False,
     "pipeline_class": InnerCompiler,
 }
-
-
-@functools.cache
-def sources_hash(folder: Path) -> str:
-    """SHA-256 over every source file that can end up in a kernel of `folder`, by place and content.
-
-    These are the engine's, and where the kernel is not the engine's those of its part of the package, or beside it;
-    subfolders included.
-    """
-    engine = Path(__file__).resolve().parent.parent
-    package = engine.parent
-    own = package / folder.relative_to(package).parts[0] if package in folder.parents else folder
-    digest = hashlib.sha256()
-    for place in sorted({engine, own}):
-        for path in sorted(place.rglob("*.py")):
-            digest.update(path.relative_to(place.parent).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
-
-
-class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
-    """Numba's cache, in which another state of the sources counts as another version of Numba.
-
-    An index of another version is put aside unread: reading it could fail on a class that is no longer there. One that
-    cannot be read is begun afresh, and what cannot be written is kept in memory: a cache is no reason to fail.
-    """
-
-    def __init__(self, python_function: Callable[..., Any]) -> None:
-        super().__init__(python_function)
-        folder = Path(python_function.__code__.co_filename).resolve().parent
-        self._cache_file._version = f"{numba.__version__} {sources_hash(folder)}"
-
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the binary of a signature; None, after a word to the user, where it has to be compiled."""
-        binary = None
-        try:
-            binary = super().load_overload(sig, target_context)
-        except Exception:  # whatever a file that was damaged, or is somebody else's, makes of unpickling
-            self._begin_afresh()
-        if binary is None:
-            _say_compiling(f"once: they are kept in {self.cache_path}")
-        return binary
-
-    def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a binary on disk, if that is possible."""
-        try:
-            super().save_overload(sig, data)
-        except Exception as error:  # a disk that is full, a folder that has become read-only, an index as above
-            _say_cache_fails(f"{self.cache_path} cannot be used ({type(error).__name__}: {error})")
-
-    def _begin_afresh(self) -> None:
-        try:
-            self.flush()
-        except OSError as error:
-            _say_cache_fails(f"{self.cache_path} cannot be used ({type(error).__name__}: {error})")
-
-
-class _NoCache(caching.NullCache):  # type: ignore[misc]
-    """The cache of a kernel for which there is no folder that can be written."""
-
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return None, after a word to the user."""
-        _say_cache_fails("neither the package's folder nor the user's cache folder can be written")
-        _say_compiling("in each process")
-
-
-def _say_compiling(how_often: str) -> None:
-    """Say before the first wait what takes so long."""
-    _say_once("compiling", f"compiling kernels, up to a minute for each game and kind of scene, {how_often}")
-
-
-def _say_cache_fails(why: str) -> None:
-    advice = "set NUMBA_CACHE_DIR to a folder that can be written, and they are kept there"
-    _say_once("cache", f"kernels are compiled in memory, for this process only, as {why}: {advice}")
-
-
-_said: set[str] = set()
-
-
-def _say_once(topic: str, words: str) -> None:
-    """Tell the user through `logging`, which without a handler of its own writes to stderr."""
-    if topic not in _said:
-        _said.add(topic)
-        logging.getLogger("bounce_env").warning("bounce_env: %s", words)
-
-
-def cache_folder(compiled: Callable[..., Any]) -> str | None:
-    """Return the folder that the binary of a kernel is kept in; None where there is none that can be written."""
-    try:
-        return str(_KernelCache(interpreted(compiled)).cache_path)
-    except RuntimeError:
-        return None
 
 
 def function(python_function: F) -> F:
@@ -161,9 +65,9 @@ def kernel(python_function: F) -> F:
         return _without_warnings(python_function)
     compiled: Any = numba.njit(**POLICY, pipeline_class=KernelCompiler)(python_function)
     try:
-        compiled._cache = _KernelCache(compiled.py_func)
+        compiled._cache = KernelCache(compiled.py_func)
     except RuntimeError:  # Numba's, where no folder can be written
-        compiled._cache = _NoCache()
+        compiled._cache = NoCache()
     return compiled
 
 

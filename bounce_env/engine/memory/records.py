@@ -1,5 +1,6 @@
 """The records that scenes and worlds are made of, and the numbers that stand for kinds. Every field has 8 bytes."""
 
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -122,11 +123,31 @@ LEDGER = record(
 # Surfaces that one ball can touch at one instant; more than these are not seen.
 TOUCHES = 16
 
-# Ball status.
-OK, BUDGET, CRUSHED, OUT = 0, 1, 2, 3
 
-# Kinds of ledger rows.
-BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = 0, 1, 2, 3, 4, 5
+class Status(IntEnum):
+    """How a ball is after a call."""
+
+    OK = 0  # in play, at the time that was asked for
+    BUDGET = 1  # in play, but the call ran out of events: the next one goes on from the last event
+    CRUSHED = 2  # caught between closing parts, which stand until a command opens the gap
+    OUT = 3  # out of play: it has crossed a drain
+
+
+class EventKind(IntEnum):
+    """What a row of the ledger tells of."""
+
+    BOUNCE = 0  # a ball bounced from an element, or from another ball
+    CONTACT_BEGINS = 1  # from now on the ball slides or rests on the element
+    CONTACT_ENDS = 2  # it no longer does
+    SENSOR = 3  # the ball's centre crossed a sensor
+    PART_STOPS = 4  # a part came to a stop, turned back, or was blocked; ball -1
+    CRUSHED = 5  # a closing part crushed the ball
+
+
+# As plain numbers, for kernels.
+OK, BUDGET, CRUSHED, OUT = map(int, Status)
+BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = map(int, EventKind)
+
 
 # Kinds of standing obstacles.
 ON_FACE, ON_CIRCLE, ON_ARC, OFF_END, RESOLVE, OFF_PART = 0, 1, 2, 3, 4, 5

@@ -6,38 +6,30 @@ from bounce_env.engine.compile.jit import function, routine, where
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import restart, resume, run
 from bounce_env.engine.memory.state import State
-from bounce_env.games.episode import Worlds
+from bounce_env.games.episode import GameState
 from bounce_env.games.streams import LAUNCHES, TARGETS, uniform
-from bounce_env.games.walls_rules import (
-    BALL_FRAMES,
-    LAUNCH_SPEED,
-    LAUNCH_X,
-    LAUNCH_Y,
-    TARGET_CLEAR,
-    TRIES,
-    Rules,
-)
+from bounce_env.games.walls.setup import BALL_FRAMES, LAUNCH_SPEED, LAUNCH_X, LAUNCH_Y, TARGET_CLEAR, TRIES, Rules
 
 
 @routine
-def serve(rules: Rules, worlds: Worlds, w: int) -> None:
+def serve(rules: Rules, game: GameState, w: int) -> None:
     """Launch the next ball, the wall as it was at first, with its target where the ball does not get by itself.
 
     Whether it does is tried out: the ball is played to its end with the wall at rest.
     """
-    state, episode = worlds.state, worlds.episodes[w]
+    state, episode = game.state, game.episodes[w]
     world = state.worlds[w]
     bounces, speed_capped = world.bounces, world.speed_capped
     for attempt in range(TRIES):
-        x, y = launch(rules, worlds, w)
-        if draw_target(rules, worlds, w, attempt, x, y):
-            launch(rules, worlds, w)  # now its flight is planned with the target in its place
+        x, y = launch(rules, game, w)
+        if draw_target(rules, game, w, attempt, x, y):
+            launch(rules, game, w)  # now its flight is planned with the target in its place
             resume(state, w)
             advance(state, w, BALL_FRAMES / rules.pace.fps, rules.pace.max_events)
             if state.hits[w, rules.courts[world.scene].target] == 0:
                 break
-    launch(rules, worlds, w)
-    worlds.memory[w].born = episode.frames
+    launch(rules, game, w)
+    game.memory[w].born = episode.frames
     world.bounces, world.speed_capped = bounces, speed_capped
 
 
@@ -48,9 +40,9 @@ def advance(state: State, w: int, until: float, max_events: int) -> int:
 
 
 @function
-def launch(rules: Rules, worlds: Worlds, w: int) -> tuple[float, float]:
-    """Begin anew with the ball in flight: as its seed says or, the first one, `worlds.start`; returns where [m]."""
-    state, start, episode = worlds.state, worlds.start, worlds.episodes[w]
+def launch(rules: Rules, game: GameState, w: int) -> tuple[float, float]:
+    """Begin anew with the ball in flight: as its seed says or, the first one, `game.start`; returns where [m]."""
+    state, start, episode = game.state, game.start, game.episodes[w]
     restart(state, w)
     court = rules.courts[state.worlds[w].scene]
     number = 16 * episode.ball
@@ -67,9 +59,9 @@ def launch(rules: Rules, worlds: Worlds, w: int) -> tuple[float, float]:
 
 
 @function
-def draw_target(rules: Rules, worlds: Worlds, w: int, attempt: int, x: float, y: float) -> bool:
+def draw_target(rules: Rules, game: GameState, w: int, attempt: int, x: float, y: float) -> bool:
     """Put the target anywhere on the field; False if that is too near to (x, y) [m], where the ball is launched."""
-    state, episode, scene = worlds.state, worlds.episodes[w], worlds.state.worlds[w].scene
+    state, episode, scene = game.state, game.episodes[w], game.state.worlds[w].scene
     court = rules.courts[scene]
     radius = target_of(state, w, court.ring)[2]
     number = 256 * episode.ball + 2 * attempt

@@ -1,28 +1,56 @@
-"""What the paddle game's kernel needs to know of a scene and of what its user chose."""
+"""What a user may choose of every game."""
 
 import math
-from typing import NamedTuple
+from typing import Annotated, Literal, NamedTuple, Self
 
 import numpy as np
+from pydantic import model_validator
+from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.packing import direction
-from bounce_env.games.levels import Levels, levels_of
-from bounce_env.games.options import PaddleOptions
-from bounce_env.games.pace import Pace, pace_of
+from bounce_env.games.options import CONFIG, Gamma, Options, TimeLimit, options_class, refuse
+from bounce_env.games.paddle.levels import END_OF_LEVELS, Levels, levels_of
+from bounce_env.games.timing import Pace, pace_of
 from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
+from bounce_env.scene.fields import Allowed, one_of, whole_number
+
+
+@options_class
+@dataclass(frozen=True, kw_only=True, config=CONFIG)
+class PaddleOptions(Options):
+    """Of the paddle game."""
+
+    action: Annotated[Literal["continuous", "discrete"], one_of("continuous", "discrete")] = "continuous"
+    reward: Annotated[Literal["score", "dense"], one_of("score", "dense")] = "score"
+    gamma: Gamma = 0.99
+    time_limit: TimeLimit = 120.0
+    num_levels: Annotated[
+        int | None,
+        Allowed(f"None, or a whole number from 0 to {END_OF_LEVELS}", whole_number(0, END_OF_LEVELS, none=True)),
+    ] = None
+    start_level: Annotated[
+        int, Allowed(f"a whole number from 0 to {END_OF_LEVELS - 1}", whole_number(0, END_OF_LEVELS - 1))
+    ] = 0
+
+    @model_validator(mode="after")
+    def _check_levels(self) -> Self:
+        if self.num_levels is None and self.start_level > 0:
+            refuse("start_level", self.start_level, "0 where num_levels is None")
+        if self.start_level + (self.num_levels or 0) > END_OF_LEVELS:
+            most = END_OF_LEVELS - self.start_level
+            refuse("num_levels", self.num_levels, f"at most {most} with start_level = {self.start_level}")
+        return self
+
 
 # The launch: place as shares of the field, so that it fits the scenes of users, too.
 LAUNCH_X = (0.2, 0.8)
 LAUNCH_Y = 0.4
 LAUNCH_SPEED = 1.5  # m/s
 LAUNCH_ANGLE = (math.radians(30.0), math.radians(150.0))
-
 REFERENCE_SPEED = 2.0  # m/s; the speed that is observed as 1
 POINTS = 1.0  # a bumper hit
-
 OBSERVATION_SIZE = 5
-
 FIELD = record(
     x="f8", width="f8", y="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
     x_scale="f8", y_scale="f8", rail_scale="f8",  # [1/m] from metres to the observation

@@ -13,27 +13,22 @@ from pydantic.dataclasses import dataclass
 from bounce_env.engine.memory.records import OUT, Array
 from bounce_env.engine.memory.state import State, copy_of_world
 from bounce_env.engine.motion.readout import view
+from bounce_env.envs.trail import Flight, Way
 from bounce_env.games.batch import Batch
-from bounce_env.games.options import CONFIG, options, refuse
+from bounce_env.games.options import CONFIG, options_class, refuse
 from bounce_env.render import Picture, Renderer
 from bounce_env.render.outline import view_box
 from bounce_env.render.projection import LARGEST_SIDE, Projection
 from bounce_env.scene.base import Spec
 from bounce_env.scene.fields import Allowed, one_of, real_number, true_or_false, whole_number
-from bounce_env.way import Flight, Way
 
 Pixels = npt.NDArray[np.uint8]
-
 OBSERVED_SIZE = 84
 """Width and height of observed frames for which no size was asked, pixels: as agents for Atari games see."""
-
 LONGEST_TRAIL = 60.0
 """Seconds of a trail: more would cover the field."""
-
 _MOST_LEVELS = 256
 """Levels and sizes of which renderers are kept."""
-
-
 _PIXELS = f"None or an integer from 1 to {LARGEST_SIDE} (pixels)"
 Side = Annotated[int | None, Allowed(_PIXELS, whole_number(1, LARGEST_SIDE, none=True))]
 Seconds = Annotated[
@@ -44,7 +39,7 @@ Seconds = Annotated[
 ]
 
 
-@options
+@options_class
 @dataclass(frozen=True, kw_only=True, config=CONFIG)
 class ViewOptions(Spec):
     """What a user may choose of what is seen. Raises ValueError for what is not allowed.

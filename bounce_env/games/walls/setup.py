@@ -1,36 +1,46 @@
-"""What the kernel of the game of walls needs to know of a scene and of what its user chose."""
+"""What a user may choose of every game."""
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
+from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.placement import cores_at_start, describe, gaps
 from bounce_env.games.episode import FPS
-from bounce_env.games.options import WallsOptions
-from bounce_env.games.pace import Pace, pace_of
+from bounce_env.games.options import CONFIG, Balls, Gamma, Options, TimeLimit, options_class
+from bounce_env.games.timing import Pace, pace_of
 from bounce_env.scene import Arc, Element, Scene, Sensor, Wall
+from bounce_env.scene.fields import one_of
 from bounce_env.wording import at_least, at_most
+
+
+@options_class
+@dataclass(frozen=True, kw_only=True, config=CONFIG)
+class WallsOptions(Options):
+    """Of the game of walls."""
+
+    reward: Annotated[Literal["sparse", "dense"], one_of("sparse", "dense")] = "sparse"
+    gamma: Gamma = 0.99
+    balls: Balls = 5
+    time_limit: TimeLimit = 90.0
+
 
 # The launch: place as shares of the field, so that it fits the scenes of users, too.
 LAUNCH_X = (0.2, 0.8)
 LAUNCH_Y = 0.9
 LAUNCH_SPEED = 0.5  # m/s, level: at most so much to either side
-
 WALL_SPEED = 1.0  # m/s; of each end along x and along y
 LONGEST = 4.0  # times the wall's least length
 SLACK = 1.0 + 1e-9  # by which it may be longer at first, for the rounding of both
 BALL_FRAMES = 8 * FPS  # that a ball is played
-
 REFERENCE_SPEED = 2.0  # m/s; the speed that is observed as 1
 TARGET_CLEAR = 0.25  # of the field's diagonal: a target is no nearer to where its ball is launched
 TRIES = 128  # places drawn for a target, of which the last one stands whatever leads to it
-
 OBSERVATION_SIZE = 12
 CONTROLS = 4
-
 COURT = record(
     x="f8", y="f8", width="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
     x_scale="f8", y_scale="f8",  # [1/m] from metres to the observation
@@ -39,7 +49,6 @@ COURT = record(
     wall="i8", part="i8",  # what is dragged: its element, and which of the parts it is
     longest="f8",  # [m] that it may be
 )  # fmt: skip
-
 MEMORY = record(born="i8")  # the frame in which the present ball was launched
 
 # What is counted, in the order of `WallsGame.counters`.

@@ -10,10 +10,9 @@ from typing import Any, ClassVar
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
-from bounce_env.frames import ViewOptions
+from bounce_env.envs.observations import ViewOptions
 from bounce_env.games.batch import Batch
 from bounce_env.games.game import Game
-from bounce_env.games.options import Options
 from bounce_env.scene import SceneError, builtin_scenes, scene_to_dict
 from bounce_env.wording import shown, unknown_name
 
@@ -24,18 +23,17 @@ FIRST = "num_envs"
 class HasKeywords:
     """Base of all environments: what they take by keyword, and their `spec`.
 
-    game_type, options_type: of the game that is played. own_keywords: what the environment itself takes, with defaults.
+    game_type: the game that is played. own_keywords: what the environment itself takes, with defaults.
     """
 
     game_type: ClassVar[type[Game]]
-    options_type: ClassVar[type[Options]]
     own_keywords: ClassVar[Mapping[str, Any]]
     _batch: Batch
     _spec: EnvSpec | None = None
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
-        if hasattr(cls, "options_type"):
+        if hasattr(cls, "game_type"):
             keywords = [
                 Parameter(name, Parameter.KEYWORD_ONLY, default=value) for name, value in cls.defaults().items()
             ]
@@ -44,7 +42,7 @@ class HasKeywords:
     @classmethod
     def defaults(cls) -> dict[str, Any]:
         """All keywords with their defaults: the game's, those of what is seen, and the environment's own."""
-        chosen = [field for options in (cls.options_type, ViewOptions) for field in fields(options)]
+        chosen = [field for options in (cls.game_type.options_type, ViewOptions) for field in fields(options)]
         return {**{field.name: field.default for field in chosen}, **cls.own_keywords}
 
     @classmethod
@@ -65,7 +63,7 @@ class HasKeywords:
         view_names = {field.name for field in fields(ViewOptions)}
         view = ViewOptions(**{name: value for name, value in keywords.items() if name in view_names})
         rest = {name: value for name, value in keywords.items() if name not in {*own, *view_names}}
-        options = cls.options_type(**rest)
+        options = cls.game_type.options_type(**rest)
         try:
             return cls.game_type(options), view, own
         except SceneError:

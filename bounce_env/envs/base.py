@@ -10,15 +10,15 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-from bounce_env.frames import Frames
+from bounce_env.envs.keywords import HasKeywords
+from bounce_env.envs.observations import Frames
+from bounce_env.envs.one_world import plain
 from bounce_env.games.actions import Buttons, Continuous, Discrete
 from bounce_env.games.batch import Batch
-from bounce_env.games.clone import States
 from bounce_env.games.episode import DISABLED, RUNNING
 from bounce_env.games.game import Game
-from bounce_env.games.start import checked_options, start_rows
-from bounce_env.keywords import HasKeywords
-from bounce_env.one_world import plain
+from bounce_env.games.reset_options import checked_options, start_rows
+from bounce_env.games.state_copy import States
 from bounce_env.render import Picture, Window
 from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.render.window import display_problem

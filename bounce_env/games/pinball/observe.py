@@ -5,10 +5,9 @@ from bounce_env.engine.memory.records import Array
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.motion.readout import ball_now, stroke_now
-from bounce_env.games.episode import Worlds
-from bounce_env.games.field import place_seen
-from bounce_env.games.pinball_points import FARMED, HIGHEST_MULTIPLIER
-from bounce_env.games.pinball_rules import (
+from bounce_env.games.episode import GameState
+from bounce_env.games.pinball.points import FARMED, HIGHEST_MULTIPLIER
+from bounce_env.games.pinball.setup import (
     HOLD_FRAMES,
     LEFT,
     NUDGE_FRAMES,
@@ -17,21 +16,22 @@ from bounce_env.games.pinball_rules import (
     SAVE_FRAMES,
     STUCK_FRAMES,
     TILT,
+    Layout,
     Rules,
     hold_timer,
     rest_left,
     save_left,
 )
-from bounce_env.games.table import Layout
+from bounce_env.games.playfield import place_seen
 
 REFERENCE_SPEED = 1.0  # m/s; the speed that is observed as 1
 
 
 @function
-def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
+def observe(rules: Rules, game: GameState, w: int, out: Array) -> None:
     """What the card of `bounce_env.cards.PinballEnv` says, in its order."""
-    state, layout = worlds.state, rules.layout
-    memory, episode, world = worlds.memory[w], worlds.episodes[w], state.worlds[w]
+    state, layout = game.state, rules.layout
+    memory, episode, world = game.memory[w], game.episodes[w], state.worlds[w]
     scene = world.scene
     table = layout.tables[scene]
     x, y, vx, vy = ball_now(state, w, 0)
@@ -61,7 +61,7 @@ def observe(rules: Rules, worlds: Worlds, w: int, out: Array) -> None:
         out[w, i + 1] = max(NUDGE_FRAMES - (episode.frames - memory.nudged), 0) / NUDGE_FRAMES
         i += 2
     if rules.pace.repeat > 0.0:
-        code = int(worlds.held[w, 0])
+        code = int(game.held[w, 0])
         for bit in range(4 if rules.nudge else 2):
             out[w, i + bit] = (code >> bit) & 1
 

@@ -1,19 +1,34 @@
-"""What a pinball table is made of: the elements that mean something to the game, found by their names' first words.
-
-A name is such a word, or begins with it and "_", "bumper" or "bumper_3"; see the built-in pinball.toml.
-"""
+"""What a user may choose of every game."""
 
 import math
-from typing import NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
+from pydantic.dataclasses import dataclass
 
+from bounce_env.engine.compile.jit import function
 from bounce_env.engine.memory.records import Array, record
+from bounce_env.games.episode import FPS
+from bounce_env.games.options import CONFIG, Balls, Flag, Options, TimeLimit, options_class
+from bounce_env.games.timing import Pace
 from bounce_env.scene import Element, Field, Flipper, Scene, Sensor, Wall
+from bounce_env.scene.fields import one_of
+
+
+@options_class
+@dataclass(frozen=True, kw_only=True, config=CONFIG)
+class PinballOptions(Options):
+    """Of the pinball game."""
+
+    action: Annotated[Literal["discrete", "buttons"], one_of("discrete", "buttons")] = "discrete"
+    reward: Annotated[Literal["dense", "score"], one_of("dense", "score")] = "dense"
+    nudge: Flag = False
+    balls: Balls = 3
+    time_limit: TimeLimit = 120.0
+
 
 # What an element is to the game.
 NOTHING, BUMPER, SLINGSHOT, TARGET, ROLLOVER, FLIPPER, IN_PLAY = 0, 1, 2, 3, 4, 5, 6
-
 WORDS = {
     "bumper": BUMPER,
     "slingshot": SLINGSHOT,
@@ -23,10 +38,8 @@ WORDS = {
     "flipper_right": FLIPPER,
     "in_play": IN_PLAY,
 }
-
 MOST_LAMPS = 62
 """Targets, and rollovers, of one table at most: each is a bit of one number."""
-
 TABLE = record(
     x="f8", y="f8", x_scale="f8", y_scale="f8",  # [m, 1/m] from metres to what is observed as [-1, 1]
     plunger_x="f8", plunger_y="f8", up_x="f8", up_y="f8",  # [m] where a ball is shot from; unit vector, against gravity
@@ -170,3 +183,68 @@ def zone_of(scene: Scene) -> tuple[float, float, float]:
     diameter = 2.0 * scene.ball.radius
     left, right = min(box[0] for box in boxes) - diameter, max(box[2] for box in boxes) + diameter
     return left, right, max(box[3] for box in boxes) + diameter
+
+
+LAUNCH_FRAMES = 3 * FPS  # after which a ball counts as in play wherever it is
+SAVE_FRAMES = 5 * FPS  # a ball that is lost so soon is given back, once
+HOLD_FRAMES = 2 * FPS  # in the flippers' zone, after which both are released until the ball leaves it
+REST_FRAMES = 18  # after a button is let go: until then it does not act again
+STUCK_FRAMES = 10 * FPS  # without a hit of a flipper, or one that gives points: the ball is shot again
+
+# Buttons, as bits of the action's code.
+LEFT, RIGHT, NUDGE_LEFT, NUDGE_RIGHT = 1, 2, 4, 8
+NUDGE = (0.25, 0.15)  # m/s to the side and up
+NUDGE_FRAMES = FPS // 4  # after which the next one may follow
+NUDGE_COST = 1.0  # of the tilt meter, which shows 3 at a tilt
+TILT, TILT_PER_FRAME = 3.0, 0.5 / FPS
+
+# What is counted, in the order of `PinballGame.counters`.
+BY_BUMPERS, BY_SLINGSHOTS, BY_TARGETS, BY_ROLLOVERS = 0, 1, 2, 3
+BANKS, TOUCHES, FLIPS, SAVES, STUCK_FREED, HOLD_RELEASED, NUDGES, TILTS = 4, 5, 6, 7, 8, 9, 10, 11
+MEMORY = record(
+    lit="i8", passed="i8",  # bits: targets that are lit, rollovers that are not any more
+    multiplier="i8",
+    farmed="i8",  # hits of bumpers and slingshots since a flipper touched the ball
+    launches="i8",  # of the ball that is played
+    saved="i8",  # whether this ball has been given back
+    serving="i8",  # whether it is on its way out of the lane, or about to be
+    shot="i8", born="i8",  # frames in which it was shot and came into play
+    zone="i8",  # frame in which it came into the flippers' zone; -1 outside
+    scored="i8",  # frame of the last hit that gave points, or of a flipper
+    pressed="i8",  # buttons in force
+    left_ready="i8", right_ready="i8",  # frames from which the buttons act again
+    tilt="f8", tilted="i8",  # the tilt meter, and whether the flippers are dead for this ball
+    nudged="i8",  # frame of the last nudge
+)  # fmt: skip
+
+# `serving`: the ball is played, is to be shot, is in the lane.
+NO, DUE, SHOT = 0, 1, 2
+
+
+class Rules(NamedTuple):
+    """What the kernel needs to know of the game beside the scene."""
+
+    layout: Layout
+    pace: Pace
+    balls: int
+    nudge: int  # 1 where the table can be nudged
+    loss: float  # reward for a ball that is lost, 0 or less
+
+
+@function
+def save_left(memory: Any, frame: int) -> int:
+    """Frames for which a ball that is lost is given back."""
+    return 0 if memory.saved else max(SAVE_FRAMES - (frame - memory.born), 0)
+
+
+@function
+def rest_left(memory: Any, frame: int, side: int) -> int:
+    """Frames until the button LEFT or RIGHT acts again."""
+    ready = memory.left_ready if side == LEFT else memory.right_ready
+    return max(ready - frame, 0)
+
+
+@function
+def hold_timer(memory: Any, frame: int) -> int:
+    """Frames that the ball has been in the flippers' zone, at most those after which they are released."""
+    return 0 if memory.zone < 0 else min(frame - memory.zone, HOLD_FRAMES)

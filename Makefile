@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
-FAST := tests/scene tests/render tests/survey/test_crossings.py tests/test_wording.py tests/test_extras.py \
+FAST := tests/scene tests/render tests/scenecheck/test_crossings.py tests/test_wording.py tests/test_extras.py \
 	tests/engine/test_impact.py tests/engine/test_law.py tests/reference/test_tutorial.py
 
 .PHONY: train test check results soak dist lint clean

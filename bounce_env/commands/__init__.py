@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from gymnasium.error import DependencyNotInstalled
 
-from bounce_env.commands.words import BAD_USAGE, FINE, INTERRUPTED, Refused, complain, say
+from bounce_env.commands.cli import BAD_USAGE, FINE, INTERRUPTED, Refused, complain, say
 from bounce_env.extras import missing, version
 
 EXTRAS = ("tyro", "tqdm", "imageio_ffmpeg")

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import bounce_env
-from bounce_env.commands.words import FINE, say
+from bounce_env.commands.cli import FINE, say
 from bounce_env.extras import install_command, version
 
 PACKAGES = {

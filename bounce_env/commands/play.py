@@ -5,9 +5,9 @@ from dataclasses import asdict
 import numpy as np
 
 from bounce_env.commands import games
+from bounce_env.commands.cli import FINE, Refused, check_range, say
 from bounce_env.commands.options import Play
 from bounce_env.commands.scenes import check_named
-from bounce_env.commands.words import FINE, Refused, check_range, say
 from bounce_env.lab.film import Film
 from bounce_env.lab.keys import controls_for
 from bounce_env.lab.play import play, prepare

@@ -7,8 +7,8 @@ import gymnasium as gym
 import numpy as np
 
 from bounce_env.commands import games
+from bounce_env.commands.cli import FINE, Refused, check_range, counted, say
 from bounce_env.commands.options import Watch
-from bounce_env.commands.words import FINE, Refused, check_range, counted, say
 from bounce_env.lab.film import Film
 from bounce_env.lab.play import play, prepare
 from bounce_env.lab.session import Session

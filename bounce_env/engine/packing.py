@@ -10,15 +10,15 @@ from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.memory.records import (
     ARC,
     CIRCLE,
+    CIRCLE_SENSOR,
     CLOSED,
-    EDGE,
+    DRAG_LIMITS,
     ELEMENT,
     FACE,
-    GUIDE,
+    FIELD_EDGE,
     MAJOR,
     MINOR,
     PART,
-    RING,
     SCENE,
     SENSOR,
     Array,
@@ -59,8 +59,8 @@ def _tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
     circles = _table(CIRCLE, scenes, _circles)
     sensors = _table(SENSOR, scenes, _sensors)
     arcs = _table(ARC, scenes, _arcs)
-    rings = _table(RING, scenes, _rings)
-    edges = _table(EDGE, scenes, _edges)
+    circle_sensors = _table(CIRCLE_SENSOR, scenes, _rings)
+    field_edges = _table(FIELD_EDGE, scenes, _edges)
     parts = _table(PART, scenes, _parts)
     rows = (_faces, _circles, _arcs, _sensors, _rings, _edges, _parts)
     heads = [
@@ -72,17 +72,17 @@ def _tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
     return {
         "scenes": np.array(heads, SCENE),
         "elements": np.zeros((len(scenes), 0), ELEMENT) if elements is None else elements,
-        "gravity": gravity if gravity.any() or edges is not None else None,
+        "gravity": gravity if gravity.any() or field_edges is not None else None,
         "faces": faces,
-        "gates": _gates(scenes),
+        "one_way": _gates(scenes),
         "circles": circles,
         "arcs": arcs,
         "sensors": sensors,
-        "rings": rings,
-        "edges": edges,
+        "circle_sensors": circle_sensors,
+        "field_edges": field_edges,
         "parts": parts,
         "turns": _turns(scenes),
-        "guides": _guides(scenes),
+        "drag_limits": _guides(scenes),
         "drags": np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
     }
 
@@ -148,10 +148,10 @@ def _gates(scenes: Sequence[Scene]) -> Array | None:
     flags = [[wall.one_way for _, wall in _walls(scene)] for scene in scenes]
     if not any(map(any, flags)):
         return None
-    gates = np.zeros((len(scenes), max(map(len, flags))), np.int8)
+    one_way = np.zeros((len(scenes), max(map(len, flags))), np.int8)
     for s, row in enumerate(flags):
-        gates[s, : len(row)] = row
-    return gates
+        one_way[s, : len(row)] = row
+    return one_way
 
 
 def switch_ends(state: State, scene: Scene, disabled: Collection[int]) -> None:
@@ -283,11 +283,11 @@ def _guides(scenes: Sequence[Scene]) -> Array | None:
     """What bounds the way of each dragged wall, by part; None where no scene has any."""
     if not any(isinstance(e, Wall) for scene in scenes for _, e in scene.parts):
         return None
-    guides = np.zeros((len(scenes), max(len(scene.parts) for scene in scenes)), GUIDE)
+    drag_limits = np.zeros((len(scenes), max(len(scene.parts) for scene in scenes)), DRAG_LIMITS)
     for s, scene in enumerate(scenes):
         side = extent(scene)
         for m, (_, e) in enumerate(scene.parts):
             if isinstance(e, Wall):
                 low, high = e.reach or ((-side, -side), (side, side))
-                guides[s, m] = (*e.start, *e.end, *low, *high, e.shortest)
-    return guides
+                drag_limits[s, m] = (*e.start, *e.end, *low, *high, e.shortest)
+    return drag_limits

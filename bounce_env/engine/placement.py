@@ -16,7 +16,7 @@ Point = tuple[float, float]
 Core = tuple[Point, Point]
 
 
-def cleared(scene: Scene, cores: Mapping[int, Core], x: float, y: float, disabled: Collection[int] = ()) -> Point:
+def place_clear(scene: Scene, cores: Mapping[int, Core], x: float, y: float, disabled: Collection[int] = ()) -> Point:
     """The place (x, y) [m] for the ball's centre, moved to the surface where it overlaps by round-off only.
 
     `cores` gives the ends of the core of each part by its index in `scene.elements`, `disabled` the elements that are
@@ -48,7 +48,7 @@ def gaps(scene: Scene, cores: Mapping[int, Core], x: float, y: float) -> Iterato
             yield index, nearest[2] - nearest[3] - scene.ball.radius
 
 
-def apart(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
+def separate(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
     """Raise ValueError where two balls at `positions` (balls, 2) [m] overlap by more than is lost by rounding.
 
     Less than that is undone along the line between them.

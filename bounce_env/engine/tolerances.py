@@ -53,10 +53,11 @@ BRACKETING_STEPS = 100
 PRESSING = 2.0**-40
 
 # On a curved surface that a ball is pressed on there is no closed form for ever smaller bounces, nor for rolling. There
-# the smallest rebound is this share of sqrt(press / bend), the speed at which the surface would let go of it.
+# the smallest rebound is this share of sqrt(press / curvature), the speed at which the surface would let go of it.
 ROLLING = 0.01
 
-# In the hollow of a curve a ball that swings slower than this share of sqrt(press / bend), or than `rest_speed`, rests.
+# In the hollow of a curve a ball that swings slower than this share of sqrt(press / curvature), or than `rest_speed`,
+# rests.
 SWING = 0.1 * ROLLING
 
 # The same for a ball balanced on top of a curve, from which it would roll off after tens of thousands of hops.

@@ -12,7 +12,7 @@ from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import offset_at
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack, switch_ends
-from bounce_env.engine.placement import Core, apart, cleared, cores_at_start
+from bounce_env.engine.placement import Core, cores_at_start, place_clear, separate
 from bounce_env.engine.snapshot import from_bytes, to_bytes
 from bounce_env.engine.world_kernels import (
     advance_to,
@@ -69,8 +69,8 @@ class World:
         at, speed = self._rows("position", position), self._rows("velocity", velocity)
         cores = cores_at_start(self.scene)
         for k, (x, y) in enumerate(at.tolist()):
-            at[k] = cleared(self.scene, cores, x, y)
-        apart(self.scene, at)
+            at[k] = place_clear(self.scene, cores, x, y)
+        separate(self.scene, at)
         reset_world(self._state, at, speed)
         self._switch_ends()
         self._started = True
@@ -124,7 +124,7 @@ class World:
         A paddle moves along its rail at `value` m/s. A flipper turns to its `active_angle` while `value` is True, and
         back while it is False. A moving bumper goes on at `value` m/s, and turns back at the ends of its rail as ever.
         The ends of a draggable wall move at `value` = ((vx, vy), (vx, vy)) m/s, the start's and the end's, as far as
-        its `reach` and `min_length` let them.
+        its `offset_radius` and `min_length` let them.
 
         Raises ValueError for a name that no part has, and for a value that it cannot take.
         """
@@ -170,7 +170,7 @@ class World:
             others = set(range(len(self.scene.elements))) - {index}
             for (x, y), status in zip(self.position.tolist(), self.status.tolist(), strict=True):
                 if status != OUT:
-                    cleared(self.scene, self._cores(), x, y, disabled=others)
+                    place_clear(self.scene, self._cores(), x, y, disabled=others)
         disabled[0, index] = not on
         self._switch_ends()
         resolve_all(self._state)
@@ -191,7 +191,7 @@ class World:
         place and command.
 
         The place is the distance or angle from its first stop, as far as the new way reaches; a draggable wall keeps
-        its ends where its `start`, `end` and `reach` are as before. All elements are on.
+        its ends where its `start`, `end` and `offset_radius` are as before. All elements are on.
         Raises ValueError where the balls have another size or one overlaps an element of the new scene; the world is
         then as before.
         """
@@ -209,7 +209,7 @@ class World:
         view(state, 0, np.empty((0, 4)), cores)
         for k, (x, y, vx, vy) in enumerate(balls.tolist()):
             if self._state.balls[0, k].status != OUT:
-                x, y = cleared(scene, _cores_by_index(scene, cores), x, y)  # noqa: PLW2901
+                x, y = place_clear(scene, _cores_by_index(scene, cores), x, y)  # noqa: PLW2901
             place_ball(state, k, x, y, vx, vy)
         out = self._state.balls["status"][0] == OUT
         state.balls[0, out] = self._state.balls[0, out]
@@ -229,17 +229,17 @@ class World:
             before = known.get(part.name, -1)
             if isinstance(part, Wall):
                 assert state.ends is not None
-                assert state.guides is not None
-                self._move_wall(part, before, state.ends[0, m], state.guides[0, m])
+                assert state.drag_limits is not None
+                self._move_wall(part, before, state.ends[0, m], state.drag_limits[0, m])
             elif before >= 0 and type(self._parts[before][1]) is type(part):
                 assert self._state.motions is not None
                 was = self._state.motions[0, before]
                 motion.offset = min(max(_offset_at(was, motion.hi, motion.lo), 0.0), float(row.span))
                 motion.command = min(max(float(was.command), -float(row.down_speed)), float(row.up_speed))
 
-    def _move_wall(self, wall: Wall, before: int, ends: Any, guide: Any) -> None:
+    def _move_wall(self, wall: Wall, before: int, ends: Any, limits: Any) -> None:
         """Put the ends of a new scene's wall, at rest, where those of the same one are, with their commands."""
-        ends.x0, ends.y0, ends.x1, ends.y1 = guide.sx, guide.sy, guide.ex, guide.ey
+        ends.x0, ends.y0, ends.x1, ends.y1 = limits.sx, limits.sy, limits.ex, limits.ey
         was = self._parts[before][1] if before >= 0 else None
         if isinstance(was, Wall) and (was.start, was.end, was.reach) == (wall.start, wall.end, wall.reach):
             assert self._state.ends is not None

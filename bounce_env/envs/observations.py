@@ -13,7 +13,7 @@ from pydantic.dataclasses import dataclass
 from bounce_env.engine.memory.records import OUT, Array
 from bounce_env.engine.memory.state import State, copy_of_world
 from bounce_env.engine.motion.readout import view
-from bounce_env.envs.trail import Flight, Way
+from bounce_env.envs.trail import Flight, Trail
 from bounce_env.games.batch import Batch
 from bounce_env.games.options import CONFIG, options_class, refuse
 from bounce_env.render import Picture, Renderer
@@ -85,7 +85,7 @@ class Frames:
         self._batch = batch
         self._trail = options.trail
         self._show_bounces = options.show_bounces
-        self._ways = [Way(self._trail) for _ in range(batch.worlds)] if self._trail > 0 else []
+        self._trails = [Trail(self._trail) for _ in range(batch.worlds)] if self._trail > 0 else []
         self._renderers: dict[tuple[int, tuple[int, int]], Renderer] = {}
 
     def __getstate__(self) -> dict[str, Any]:
@@ -107,10 +107,10 @@ class Frames:
 
     def update(self, worlds: Iterable[int]) -> None:
         """Some worlds have been reset or stepped: their balls have gone on, and their observations are drawn anew."""
-        if not self._ways and self._pixels is None:
+        if not self._trails and self._pixels is None:
             return
         for w in worlds:
-            if self._ways:
+            if self._trails:
                 self._go_on(w)
             if self._pixels is not None:
                 self._pixels[w] = self._drawn(w, self._picture(w, at_bounce=False, score=False), self._observed)
@@ -118,9 +118,9 @@ class Frames:
     def restart(self, worlds: Iterable[int]) -> None:
         """Some worlds go on from another state: what is known of the ways that their balls have come is not theirs."""
         worlds = list(worlds)
-        if self._ways:
+        if self._trails:
             for w in worlds:
-                self._ways[w] = Way(self._trail)
+                self._trails[w] = Trail(self._trail)
         self.update(worlds)
 
     def picture(self, world: int) -> Picture:
@@ -148,7 +148,7 @@ class Frames:
         # A step lasts longer where a ball has been served in it: the one that is seen now came from there.
         longest = game.step_seconds * 1.001
         flight = Flight.of(self._batch.state.balls[w, 0])
-        self._ways[w].go_on(ball, flight, float(world.time_hi + world.time_lo), longest)
+        self._trails[w].go_on(ball, flight, float(world.time_hi + world.time_lo), longest)
 
     def _picture(self, w: int, *, at_bounce: bool, score: bool) -> Picture:
         batch = self._batch
@@ -167,7 +167,7 @@ class Frames:
             lit=None if batch.memory is None else batch.game.lamps(batch.memory[w]),
             score=float(batch.episodes[w].score) if score else None,
             targets=batch.target_places(w),
-            trail=self._ways[w].until(float(world.time_hi + world.time_lo)) if self._ways else None,
+            trail=self._trails[w].until(float(world.time_hi + world.time_lo)) if self._trails else None,
         )
 
 

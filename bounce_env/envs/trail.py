@@ -40,7 +40,7 @@ class Flight(NamedTuple):
         return self.x + (self.vx + 0.5 * self.ax * t) * t, self.y + (self.vy + 0.5 * self.ay * t) * t
 
 
-class Way:
+class Trail:
     """Where the ball of one world has been for the last `seconds`, as far as it was told by `go_on`.
 
     Between two calls it knows the flight before the first bounce and the one after the last: with one bounce it is

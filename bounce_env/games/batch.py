@@ -202,9 +202,9 @@ class Batch:
 
     def target_places(self, world: int) -> npt.NDArray[np.float64]:
         """The centres of the game's `targets` in a world now, (n, 2) [m]."""
-        if not self.game.targets or self.state.rings is None:
+        if not self.game.targets or self.state.circle_sensors is None:
             return np.zeros((0, 2))
-        rings = self.state.rings[self.state.worlds["scene"][world]]
+        rings = self.state.circle_sensors[self.state.worlds["scene"][world]]
         rows = [int(np.flatnonzero(rings["element"] == index)[0]) for index in self.game.targets]
         return np.stack([rings["x"][rows], rings["y"][rows]], axis=1)
 

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from bounce_env.render.looks import FIELD_BOTTOM, FIELD_TOP, TEXT, TEXT_SHADOW, Look, Patch, Point, Stroke
+from bounce_env.render.shapes import FIELD_BOTTOM, FIELD_TOP, TEXT, TEXT_SHADOW, Look, Patch, Point, Stroke
 
 Pixels = npt.NDArray[np.uint8]
 Floats = npt.NDArray[np.float64]

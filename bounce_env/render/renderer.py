@@ -7,11 +7,11 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.render.frame_content import Picture
 from bounce_env.render.lazy_pygame import load_pygame
-from bounce_env.render.looks import ball_look, part_look, rail_look, solid_looks, still_look, target_look, trail_look
 from bounce_env.render.outline import view_box
-from bounce_env.render.picture import Picture
 from bounce_env.render.projection import Projection
+from bounce_env.render.shapes import ball_look, part_look, rail_look, solid_looks, still_look, target_look, trail_look
 from bounce_env.scene import Field, Scene, Sensor
 
 

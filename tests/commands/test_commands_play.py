@@ -5,9 +5,9 @@ from dataclasses import fields
 import pytest
 
 from bounce_env.commands import main, play
+from bounce_env.commands.cli import Refused
 from bounce_env.commands.games import game_id
 from bounce_env.commands.options import Play
-from bounce_env.commands.words import Refused
 from bounce_env.envs.paddle import PaddleEnv
 from bounce_env.envs.pinball import PinballEnv
 from bounce_env.envs.walls import WallsEnv

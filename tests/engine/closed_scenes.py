@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env import Ball, Bumper, Scene, Wall
-from bounce_env.engine.placement import cleared
+from bounce_env.engine.placement import place_clear
 
 Floats = npt.NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class Closed:
             x, y = rng.uniform(-1.6, 1.6, 2).tolist()
             if self.holds(x, y):
                 try:
-                    places.append(cleared(self.scene, {}, x, y))
+                    places.append(place_clear(self.scene, {}, x, y))
                 except ValueError:
                     continue
             if len(places) == different:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bounce_env import Arc, Ball, Bumper, Field, Scene, Sensor, Wall
-from bounce_env.engine.placement import cleared
+from bounce_env.engine.placement import place_clear
 
 MAX_SPEED = 20.0  # m/s
 
@@ -32,7 +32,7 @@ def start_in(rng: np.random.Generator, scene: Scene) -> tuple[tuple[float, float
     for _ in range(200):
         x, y = rng.uniform(scene.ball.radius, 1.0 - scene.ball.radius, 2).tolist()
         try:
-            place = cleared(scene, {}, x, y)
+            place = place_clear(scene, {}, x, y)
         except ValueError:
             continue
         angle, speed = rng.uniform(0.0, 2.0 * math.pi), rng.choice([0.0, 0.1, 1.0, 10.0])

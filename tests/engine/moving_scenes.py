@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bounce_env import Ball, Bumper, Flipper, Paddle, Scene, Wall
-from bounce_env.engine.placement import apart, cleared, cores_at_start
+from bounce_env.engine.placement import cores_at_start, place_clear, separate
 from bounce_env.engine.world import World
 
 MAX_SPEED = 250.0  # m/s, more than any part's surface
@@ -41,8 +41,8 @@ def start(rng: np.random.Generator, world: World, balls: int) -> bool:
     radius = scene.ball.radius
     for _ in range(400):
         try:
-            place = cleared(scene, cores_at_start(scene), *rng.uniform(radius, 1.0 - radius, 2).tolist())
-            apart(scene, np.array([*places, place]))
+            place = place_clear(scene, cores_at_start(scene), *rng.uniform(radius, 1.0 - radius, 2).tolist())
+            separate(scene, np.array([*places, place]))
         except ValueError:
             continue
         places.append(place)

@@ -39,7 +39,7 @@ def test_second_process_compiles_nothing_and_an_edited_helper_is_noticed(tmp_pat
     shutil.copytree(PACKAGE, tmp_path / "bounce_env", ignore=shutil.ignore_patterns("__pycache__"))
     assert run_in(tmp_path) == ["0", "1", "1.0"]
     assert run_in(tmp_path) == ["1", "0", "1.0"]
-    law = tmp_path / "bounce_env" / "engine" / "contact" / "law.py"
+    law = tmp_path / "bounce_env" / "engine" / "contact" / "restitution.py"
     source = law.read_text()
     assert source.count("uy + (rebound * ny") == 1
     law.write_text(source.replace("uy + (rebound * ny", "uy + (0.5 * rebound * ny"))

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bounce_env.engine.compile.jit import from_python
-from bounce_env.engine.contact import law
+from bounce_env.engine.contact import restitution
 
-bounce, capped = from_python(law.bounce), from_python(law.capped)
+bounce, capped = from_python(restitution.bounce), from_python(restitution.capped)
 
 speed = st.floats(-10.0, 10.0)
 angle = st.floats(0.0, 2.0 * math.pi)

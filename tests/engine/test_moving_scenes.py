@@ -28,9 +28,9 @@ def overlap(world: World) -> float:
         index: ((x0, y0), (x1, y1))
         for (index, _), (x0, y0, x1, y1) in zip(world.scene.parts, world.cores.tolist(), strict=True)
     }
-    apart = np.hypot(*(place[:, None] - place[None, :]).T) + 10.0 * np.eye(len(place))
+    separate = np.hypot(*(place[:, None] - place[None, :]).T) + 10.0 * np.eye(len(place))
     beside = min(gap for x, y in place.tolist() for _, gap in gaps(world.scene, cores, x, y))
-    return float(max((np.abs(place - 0.5) - (0.5 - radius)).max(), 2.0 * radius - apart.min(), -beside))
+    return float(max((np.abs(place - 0.5) - (0.5 - radius)).max(), 2.0 * radius - separate.min(), -beside))
 
 
 def test_moving_scenes() -> None:

@@ -8,7 +8,7 @@ import pytest
 from rollouts import PADDLE, PINBALL, assert_same, make_vec
 
 from bounce_env import Flipper
-from bounce_env.envs.trail import Flight, Way
+from bounce_env.envs.trail import Flight, Trail
 
 RADIUS = 0.02  # [m] of the paddle game's ball
 G = 1.5  # m/s^2
@@ -63,7 +63,7 @@ def test_the_trail_goes_through_the_very_place_of_a_bounce(frame_skip):
 
 
 def test_several_bounces_in_a_step_are_cut_short_but_for_the_last():
-    way = Way(1.0)
+    way = Trail(1.0)
     way.go_on(0, Flight(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0), 0.1, 0.2)
     way.go_on(0, Flight(5.0, 5.0, 0.0, 1.0, 0.0, 0.0, 0.15), 0.2, 0.2)
     np.testing.assert_allclose(way.until(0.2)[[0, 1, -1], :2], [(0.1, 0.0), (5.0, 5.0), (5.0, 5.05)])
@@ -73,7 +73,7 @@ def test_several_bounces_in_a_step_are_cut_short_but_for_the_last():
     ("ball", "now", "goes_on"), [(0, 0.2, True), (1, 0.2, False), (0, 0.4, False), (0, 0.1, False)]
 )
 def test_another_ball_an_earlier_time_and_a_gap_begin_a_new_trail(ball, now, goes_on):
-    way, flight = Way(1.0), Flight(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+    way, flight = Trail(1.0), Flight(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
     way.go_on(0, flight, 0.1, 0.051)
     way.go_on(0, flight, 0.15, 0.051)
     way.go_on(ball, flight, now, 0.051)

@@ -15,7 +15,7 @@ from moving_oracle import MovingOracle
 from mpmath import mpf
 from stability_case import new_world
 
-from bounce_env.engine.placement import apart, cleared, cores_at_start
+from bounce_env.engine.placement import cores_at_start, place_clear, separate
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Wall
 
 SECONDS = 2.0
@@ -74,8 +74,8 @@ def starts_of(rng, scene, count):
     places = []
     while len(places) < count:
         try:
-            place = cleared(scene, cores_at_start(scene), *rng.uniform(0.03, 0.97, 2).tolist())
-            apart(scene, np.array([*places, place]))
+            place = place_clear(scene, cores_at_start(scene), *rng.uniform(0.03, 0.97, 2).tolist())
+            separate(scene, np.array([*places, place]))
         except ValueError:
             continue
         places.append(place)

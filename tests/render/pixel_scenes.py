@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.render import Picture, Renderer
-from bounce_env.render.looks import ball_look
+from bounce_env.render.shapes import ball_look
 from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall
 
 TABLE = Scene(

@@ -23,7 +23,7 @@ from pixel_scenes import (
 
 from bounce_env.engine.placement import cores_at_start
 from bounce_env.render import Picture, Renderer, painter
-from bounce_env.render.looks import Stroke
+from bounce_env.render.shapes import Stroke
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
 
 SIZES = [(84, 84), (256, 384), (400, 560), (None, None)]

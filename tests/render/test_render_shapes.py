@@ -9,7 +9,7 @@ from conftest import soak_count
 from pixel_scenes import centroid, changed, distances
 
 from bounce_env.render import Picture, Renderer
-from bounce_env.render.looks import still_look
+from bounce_env.render.shapes import still_look
 from bounce_env.scene import Arc, Ball, Bumper, Element, Field, Scene, Sensor, Wall
 
 Pixels = npt.NDArray[np.uint8]

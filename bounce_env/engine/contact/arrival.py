@@ -17,7 +17,7 @@ def end_flight(state: State, w: int, k: int, t: float, hi: float, lo: float) -> 
     """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
     ball, extent = state.balls[w, k], state.scenes[state.worlds[w].scene].extent
     flight = flight_of(state, ball)
-    ball.slack = touch_tolerance(flight, extent, t)
+    ball.tolerance = touch_tolerance(flight, extent, t)
     way = path_bound(flight, t)
     if way > CORNER * ULPS_OF_LENGTH * extent:
         ball.confined = 0
@@ -66,7 +66,7 @@ def snap(state: State, w: int, k: int) -> None:
 def _snap_to_face(state: State, w: int, k: int, index: int) -> None:
     ball, face = state.balls[w, k], state.faces[state.worlds[w].scene, index]
     height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
-    error = height - math.copysign(face.reach, height)
+    error = height - math.copysign(face.offset_radius, height)
     ball.x += error * face.uy
     ball.y -= error * face.ux
 
@@ -76,7 +76,7 @@ def _snap_to_circle(state: State, w: int, k: int) -> None:
     ball = state.balls[w, k]
     circle = state.circles[state.worlds[w].scene, ball.hit_index]
     dx, dy = ball.x - circle.x, ball.y - circle.y
-    stretch = circle.reach / math.sqrt(dx * dx + dy * dy)
+    stretch = circle.offset_radius / math.sqrt(dx * dx + dy * dy)
     ball.x = circle.x + dx * stretch
     ball.y = circle.y + dy * stretch
 
@@ -87,17 +87,17 @@ def _snap_to_arc(state: State, w: int, k: int) -> None:
     arc = state.arcs[state.worlds[w].scene, ball.hit_index]
     dx, dy = ball.x - arc.x, ball.y - arc.y
     distance = math.sqrt(dx * dx + dy * dy)
-    reach = arc.outer if abs(distance - arc.outer) <= abs(distance - arc.inner) else arc.inner
-    ball.x = arc.x + dx * (reach / distance)
-    ball.y = arc.y + dy * (reach / distance)
+    offset_radius = arc.outer if abs(distance - arc.outer) <= abs(distance - arc.inner) else arc.inner
+    ball.x = arc.x + dx * (offset_radius / distance)
+    ball.y = arc.y + dy * (offset_radius / distance)
 
 
 @where("parts")
 def _snap_to_part(state: State, w: int, k: int, m: int) -> None:
     ball, part = state.balls[w, k], moving_part(state, w, m)
-    core, reach = core_at(part, ball.hi, ball.lo), part.shape.reach
-    nx, ny, distance, _ = on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.slack)
+    core, offset_radius = core_at(part, ball.hi, ball.lo), part.shape.offset_radius
+    nx, ny, distance, _ = on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
     # A search may end before a hit: then there is nothing to put the ball on.
-    if distance - reach <= SEARCH_ENDS * (reach + core.front - core.back):
-        ball.x += (reach - distance) * nx
-        ball.y += (reach - distance) * ny
+    if distance - offset_radius <= SEARCH_ENDS * (offset_radius + core.front - core.back):
+        ball.x += (offset_radius - distance) * nx
+        ball.y += (offset_radius - distance) * ny

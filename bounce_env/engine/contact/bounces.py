@@ -6,9 +6,10 @@ is closed on. So a corner is right from either side, and mirror images stay mirr
 """
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.contact.law import bounce, capped
 from bounce_env.engine.contact.restitution import (
     along_speed,
+    bounce,
+    capped,
     closing_speed,
     is_soft,
     normal_load,
@@ -119,7 +120,7 @@ def _bounce_from(state: State, w: int, k: int, i: int, closing: float, noise: fl
     rebound, f = material.b * closing, material.f
     if touch.moves and closing <= touch.least:
         rebound, f = max(rebound, touch.least), (1.0 if head.rest_speed > 0.0 and f > 0.0 else f)
-    elif state.gravity is not None or touch.bend < 0.0:
+    elif state.gravity is not None or touch.curvature < 0.0:
         rebound, f = _softened(ball, touch, head, material, closing, rebound, f)
     kicked = material.kick > 0.0 and closing > material.kick_threshold
     if kicked and _is_ready(state, w, k, touch.element, material.cooldown):
@@ -147,15 +148,15 @@ def _softened(
     press = normal_load(ball, touch)
     if press == 0.0:
         return rebound, f
-    rolling = touch.bend != 0.0 and closing <= 1.5 * rolling_speed(ball, touch, press, head.extent)
+    rolling = touch.curvature != 0.0 and closing <= 1.5 * rolling_speed(ball, touch, press, head.extent)
     if closing < head.rest_speed or (rolling and head.rest_speed > 0.0):
         return 0.0, (1.0 if f > 0.0 else 0.0)
-    if touch.bend == 0.0 and material.b == 1.0 and is_soft(closing, press, head.extent):
+    if touch.curvature == 0.0 and material.b == 1.0 and is_soft(closing, press, head.extent):
         # Hops that lose nothing have no end, and these show in no place of the ball: it slides.
         return 0.0, f
     # Where nothing is lost bounces do not die away: only of a ball that rolls are they the smallest there are.
     lossless = material.b >= 1.0 and ball.rolling != touch.element
-    if touch.bend == 0.0 or lossless:
+    if touch.curvature == 0.0 or lossless:
         return rebound, f
     smallest = rolling_speed(ball, touch, press, head.extent)
     holds = f == 0.0 or (f < 1.0 and head.rest_speed == 0.0)

@@ -38,7 +38,7 @@ def _roll(state: State, w: int, k: int, ledger: Table) -> None:
     for i in range(ball.touched):
         touch = state.touches[w, i]
         leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
-        if touch.bend != 0.0 and not leaving and normal_load(ball, touch) > best:
+        if touch.curvature != 0.0 and not leaving and normal_load(ball, touch) > best:
             best, index = normal_load(ball, touch), i
     if index < 0:
         return

@@ -5,7 +5,7 @@ import math
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.jams import are_stuck, count_meeting, have_no_room, note_speed, stop
-from bounce_env.engine.contact.law import capped
+from bounce_env.engine.contact.restitution import capped
 from bounce_env.engine.contact.squeeze import take_opposed
 from bounce_env.engine.detect.pairs import pair_noise, plan_pairs, weight_of
 from bounce_env.engine.detect.schedule import resolve_next
@@ -69,7 +69,7 @@ def _exchange(
     gain = closing + max(0.0 if dead or closing <= noise else head.ball_b * head.ball_b * closing, least)
     share = 1.0 if other.status == CRUSHED else (0.0 if one.status == CRUSHED else 0.5)
     # A small hop does not bounce the ball from what else it touches.
-    one.vague = other.vague = gain if closing <= noise else gain * (one.slack + other.slack) / distance
+    one.vague = other.vague = gain if closing <= noise else gain * (one.tolerance + other.tolerance) / distance
     one.vx, one.vy = vx + share * gain * nx, vy + share * gain * ny
     other.vx, other.vy = ux - (1.0 - share) * gain * nx, uy - (1.0 - share) * gain * ny
     # A ball may be crushed against another one, too.

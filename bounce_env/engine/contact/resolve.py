@@ -53,7 +53,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     extent = state.scenes[state.worlds[w].scene].extent
     if ball.confined > BOUNCES_WITHOUT_ROOM or (state.gravity is not None and is_slow(ball, extent)):
         # Between several surfaces the last bounces go to and fro: what lies within their reach counts as touched.
-        ball.slack = max(ball.slack, CORNER * ULPS_OF_LENGTH * extent)
+        ball.tolerance = max(ball.tolerance, CORNER * ULPS_OF_LENGTH * extent)
     contact, support, settling = ball.contact, ball.support, ball.settling
     ball.settling = 0
     collect_touches(state, w, k)
@@ -84,7 +84,7 @@ def _is_stuck(ball: Record, touches: Table, w: int, extent: float) -> bool:
     seconds = _standing_time(ball, extent)
     for i in range(ball.touched):
         closing = surface_speed(touches[w, i])
-        if closing > 0.0 and not closing * seconds <= ball.slack:
+        if closing > 0.0 and not closing * seconds <= ball.tolerance:
             return False
     return True
 
@@ -197,7 +197,7 @@ def _settle(state: State, w: int, k: int, single: int) -> float:
     head, touch = state.scenes[scene], state.touches[w, single]
     material = state.elements[scene, touch.element]
     press, rebound, b, f = normal_load(ball, touch), -closing_speed(ball, touch), material.b, material.f
-    if touch.bend != 0.0 or touch.moves or head.rest_speed > 0.0 or not 0.0 < b < 1.0:
+    if touch.curvature != 0.0 or touch.moves or head.rest_speed > 0.0 or not 0.0 < b < 1.0:
         return -1.0
     if press == 0.0 or not is_soft(rebound, press, head.extent):
         return -1.0

@@ -57,13 +57,13 @@ def _swings_out(ball: Record, touch: Record, rest_speed: float) -> bool:
 
     Told by the speed at which it comes, or came, through the point where the normal alone carries it.
     """
-    if touch.bend == 0.0 or ball.gx * touch.nx + ball.gy * touch.ny >= 0.0:
+    if touch.curvature == 0.0 or ball.gx * touch.nx + ball.gy * touch.ny >= 0.0:
         return False
     along, across = along_speed(ball, touch), ball.gx * touch.ny - ball.gy * touch.nx
     pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
-    speed = math.sqrt(along * along + across * across / (abs(touch.bend) * pull))
-    natural = math.sqrt(pull / abs(touch.bend))
-    return speed <= (max(rest_speed, SWING * natural) if touch.bend < 0.0 else BALANCE * natural)
+    speed = math.sqrt(along * along + across * across / (abs(touch.curvature) * pull))
+    natural = math.sqrt(pull / abs(touch.curvature))
+    return speed <= (max(rest_speed, SWING * natural) if touch.curvature < 0.0 else BALANCE * natural)
 
 
 @function
@@ -129,14 +129,14 @@ def _slides_on(ball: Record, touches: Table, w: int, i: int) -> bool:
     slow = slow_speed(ball, touch)
     # However little it is pressed: what is not constrained would sink in by and by.
     pressed = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
-    if touch.bend != 0.0 or touch.moves or closing_speed(ball, touch) < -slow or not pressed:
+    if touch.curvature != 0.0 or touch.moves or closing_speed(ball, touch) < -slow or not pressed:
         return False
     ux, uy = touch.ny, -touch.nx
     rate = (ball.vx - touch.ux) * ux + (ball.vy - touch.uy) * uy
     pull = ball.gx * ux + ball.gy * uy
     noise = PRESSING * (abs(ball.gx) + abs(ball.gy))
     lean = rate if abs(rate) > slow else (pull if abs(pull) > noise else 0.0)
-    if (touch.along >= touch.length - ball.slack and lean > 0.0) or (touch.along <= ball.slack and lean < 0.0):
+    if (touch.along >= touch.length - ball.tolerance and lean > 0.0) or (touch.along <= ball.tolerance and lean < 0.0):
         return False
     ax, ay = pull * ux, pull * uy
     for j in range(ball.touched):

@@ -1,4 +1,8 @@
-"""How a ball and a surface that it touches come together: how fast, how hard pressed, and what is too slow to count."""
+"""The bounce law and its cap, and how a ball and a surface that it touches come together.
+
+How fast they close, how hard the ball is pressed on the surface, and what is too slow to count. The law is the
+tutorial's reflection in the frame of the surface (docs/physics.md, "Bounce law").
+"""
 
 import math
 
@@ -7,10 +11,48 @@ from bounce_env.engine.tolerances import PRESSING, ROLLING, ULPS_OF_LENGTH, ULPS
 
 
 @function
+def bounce(
+    vx: float, vy: float, nx: float, ny: float, ux: float, uy: float, rebound: float, f: float
+) -> tuple[float, float]:
+    """Velocity [m/s] after a hit, v' = u + f w_t + rebound n, with w = v - u; by the law `rebound` is b times -w.n.
+
+    Tutorial, "Real bounce and friction": project on the wall and on its normal, scale by friction and bounciness,
+    reverse, add. Unit vectors throughout: the tutorial's printed projections divide by the wall's length once where
+    they must divide twice. `n` points from the element to the ball, `u` is the surface's velocity at the contact
+    point; b and f are the products of ball's and element's.
+    """
+    wx, wy = vx - ux, vy - uy
+    along = f * (wy * nx - wx * ny)
+    return ux + (rebound * nx - along * ny), uy + (rebound * ny + along * nx)
+
+
+@function
+def capped(
+    vx: float, vy: float, nx: float, ny: float, ux: float, uy: float, max_speed: float
+) -> tuple[float, float, bool]:
+    """Velocity shrunk to `max_speed` (vx, vy, whether it was): never so that the ball closes on the surface.
+
+    If shrinking both components would leave the ball slower than the surface that pushes it, the normal one stays and
+    the tangential one shrinks.
+    """
+    square = vx * vx + vy * vy
+    if square <= max_speed * max_speed:
+        return vx, vy, False
+    shrink = max_speed / math.sqrt(square)
+    sx, sy = vx * shrink, vy * shrink
+    if (sx - ux) * nx + (sy - uy) * ny >= 0.0:
+        return sx, sy, True
+    normal = min(vx * nx + vy * ny, max_speed)
+    along = vy * nx - vx * ny
+    along = math.copysign(math.sqrt(max(max_speed * max_speed - normal * normal, 0.0)), along)
+    return normal * nx - along * ny, normal * ny + along * nx, True
+
+
+@function
 def slow_speed(ball: Record, touch: Record) -> float:
     """Return the speed [m/s] below which closing is no hit: the rounding of velocities, and of a curve's normal."""
     speed = abs(ball.vx) + abs(ball.vy) + (abs(touch.ux) + abs(touch.uy))
-    return (ULPS_OF_SPEED + ball.slack * abs(touch.bend)) * speed
+    return (ULPS_OF_SPEED + ball.tolerance * abs(touch.curvature)) * speed
 
 
 @function
@@ -45,7 +87,7 @@ def normal_load(ball: Record, touch: Record) -> float:
     Gravity's share, and on a curve what it takes to follow it.
     """
     along = along_speed(ball, touch)
-    turn = touch.bend * along * along
+    turn = touch.curvature * along * along
     press = -(ball.gx * touch.nx + ball.gy * touch.ny) - turn
     noise = PRESSING * (abs(ball.gx) + abs(ball.gy) + abs(turn))
     return press if press > noise else 0.0
@@ -71,7 +113,7 @@ def rolling_speed(ball: Record, touch: Record, press: float, extent: float) -> f
     several surfaces comes down to rest.
     """
     return min(
-        ROLLING * math.sqrt(press / abs(touch.bend)),
+        ROLLING * math.sqrt(press / abs(touch.curvature)),
         max(0.5 * abs(along_speed(ball, touch)), 4.0 * soft_speed(press, extent)),
     )
 

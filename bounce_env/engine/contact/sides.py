@@ -37,16 +37,16 @@ def update_sides(state: State, w: int, k: int, start: Flight, t: float) -> None:
 
 @function
 def _side_after(
-    height: float, rate: float, height0: float, rate0: float, t: float, slow: float, slack: float, side: int
+    height: float, rate: float, height0: float, rate0: float, t: float, slow: float, tolerance: float, side: int
 ) -> int:
     """On which side of a line or circle the ball is: away from it the height tells, on it the way that it came.
 
     It came from the side that it moves away from, unless it was there already when its flight, of `t` seconds, began,
     and neither left meanwhile nor turned round; then it keeps the side that it had.
     """
-    if abs(height) > slack:
+    if abs(height) > tolerance:
         return 1 if height > 0.0 else -1
-    left = abs(height0) > slack or abs(rate0) * t > 4.0 * slack
+    left = abs(height0) > tolerance or abs(rate0) * t > 4.0 * tolerance
     turned = rate * rate0 < 0.0 and abs(rate0) > slow
     if abs(rate) > slow and (left or turned):
         return 1 if rate < 0.0 else -1
@@ -62,7 +62,7 @@ def _update_faces(state: State, w: int, k: int, start: Flight, t: float) -> None
         height = (ball.y - line.y) * line.ux - (ball.x - line.x) * line.uy
         height0 = (start.y - line.y) * line.ux - (start.x - line.x) * line.uy
         rate, rate0 = ball.vy * line.ux - ball.vx * line.uy, start.vy * line.ux - start.vx * line.uy
-        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, slow, ball.slack, sides[w, k, i])
+        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, slow, ball.tolerance, sides[w, k, i])
 
 
 @where("arc_sides")
@@ -76,9 +76,9 @@ def _update_arcs(state: State, w: int, k: int, start: Flight, t: float) -> None:
         height, height0 = distance - arc.outer, distance0 - arc.outer
         rate, rate0 = (ball.vx * dx + ball.vy * dy) / distance, (start.vx * dx0 + start.vy * dy0) / distance0
         # Of a touch in passing (see `grazes`) the instant, and so the way the distance changes, is only roughly known.
-        bend = bending(Flight(dx, dy, ball.vx, ball.vy, ball.ax, ball.ay))
-        vague = max(slow, math.sqrt(2.0 * abs(bend) * ball.slack))
-        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, vague, ball.slack, sides[w, k, i])
+        curvature = bending(Flight(dx, dy, ball.vx, ball.vy, ball.ax, ball.ay))
+        vague = max(slow, math.sqrt(2.0 * abs(curvature) * ball.tolerance))
+        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, vague, ball.tolerance, sides[w, k, i])
 
 
 @where("part_sides")
@@ -98,7 +98,7 @@ def _update_parts(state: State, w: int, k: int, start: Flight, t: float) -> None
         height0, rate0 = height_over(ends, until - both, x, y, vx, vy)
         height, rate = height_over(ends, until, ball.x, ball.y, ball.vx, ball.vy)
         slower = slow + ULPS_OF_SPEED * (abs(ends.vx0) + abs(ends.vy0) + abs(ends.vx1) + abs(ends.vy1))
-        sides[w, k, m] = _side_after(height, rate, height0, rate0, both, slower, ball.slack, sides[w, k, m])
+        sides[w, k, m] = _side_after(height, rate, height0, rate0, both, slower, ball.tolerance, sides[w, k, m])
 
 
 @where("face_sides", otherwise=-1)
@@ -113,7 +113,7 @@ def _left_face(state: State, w: int, k: int) -> int:
     now = Flight(ball.x, ball.y, ball.vx, ball.vy, None, None)
     for i in range(state.scenes[scene].faces):
         face = state.faces[scene, i]
-        leaves = leaves_end(seen_from(now, face.x, face.y), line_of(face), ball.slack)
+        leaves = leaves_end(seen_from(now, face.x, face.y), line_of(face), ball.tolerance)
         if leaves and not is_off(state, w, face.element):
             return i
     return -1
@@ -137,12 +137,12 @@ def _turn_to_faces(state: State, w: int, k: int, left: int, turn: float) -> None
     for i in range(state.scenes[scene].faces):
         face = state.faces[scene, i]
         dx, dy = ball.x - face.x, ball.y - face.y
-        if i == left or abs(dy * face.ux - dx * face.uy) > ball.slack:
+        if i == left or abs(dy * face.ux - dx * face.uy) > ball.tolerance:
             continue
         along = dx * face.ux + dy * face.uy
-        if abs(along) <= ball.slack:
+        if abs(along) <= ball.tolerance:
             state.face_sides[w, k, i] = -1 if turn > 0.0 else 1
-        elif abs(along - face.length) <= ball.slack:
+        elif abs(along - face.length) <= ball.tolerance:
             state.face_sides[w, k, i] = 1 if turn > 0.0 else -1
 
 
@@ -154,9 +154,9 @@ def _turn_to_arcs(state: State, w: int, k: int, turn: float) -> None:
         if arc.span == CLOSED:
             continue
         dx, dy = ball.x - arc.x, ball.y - arc.y
-        if abs(dx - arc.sx * arc.outer) + abs(dy - arc.sy * arc.outer) <= 2.0 * ball.slack:
+        if abs(dx - arc.sx * arc.outer) + abs(dy - arc.sy * arc.outer) <= 2.0 * ball.tolerance:
             state.arc_sides[w, k, i] = 1 if turn > 0.0 else -1
-        elif abs(dx - arc.ex * arc.outer) + abs(dy - arc.ey * arc.outer) <= 2.0 * ball.slack:
+        elif abs(dx - arc.ex * arc.outer) + abs(dy - arc.ey * arc.outer) <= 2.0 * ball.tolerance:
             state.arc_sides[w, k, i] = -1 if turn > 0.0 else 1
 
 
@@ -166,7 +166,7 @@ def update_crossing_sides(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = state.scenes[scene]
     _update_lines(ball, state.sensors, state.sensor_sides, head.sensors, w, k, scene)
-    _update_lines(ball, state.edges, state.edge_sides, head.fields, w, k, scene)
+    _update_lines(ball, state.field_edges, state.field_edge_sides, head.fields, w, k, scene)
     _update_rings(state, w, k)
 
 
@@ -178,16 +178,16 @@ def _update_lines(ball: Record, lines: Table, sides: Table, count: int, w: int, 
     for i in range(count):
         line = lines[scene, i]
         height = (ball.y - line.y) * line.ux - (ball.x - line.x) * line.uy
-        if abs(height) > ball.slack:
+        if abs(height) > ball.tolerance:
             sides[w, k, i] = 1 if height > 0.0 else -1
 
 
-@where("rings")
+@where("circle_sensors")
 def _update_rings(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    for i in range(state.scenes[scene].rings):
-        ring = state.rings[scene, i]
+    for i in range(state.scenes[scene].circle_sensors):
+        ring = state.circle_sensors[scene, i]
         dx, dy = ball.x - ring.x, ball.y - ring.y
         height = math.sqrt(dx * dx + dy * dy) - ring.radius
-        if abs(height) > ball.slack:
-            state.ring_sides[w, k, i] = 1 if height > 0.0 else -1
+        if abs(height) > ball.tolerance:
+            state.circle_sensor_sides[w, k, i] = 1 if height > 0.0 else -1

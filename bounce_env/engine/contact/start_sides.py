@@ -20,7 +20,7 @@ def set_initial_sides(state: State, w: int, k: int) -> None:
     head, gravity = state.scenes[scene], gravity_of(state, scene)
     _set_line_sides(ball, gravity, state.faces, state.face_sides, head.faces, w, k, scene)
     _set_line_sides(ball, gravity, state.sensors, state.sensor_sides, head.sensors, w, k, scene)
-    _set_line_sides(ball, gravity, state.edges, state.edge_sides, head.fields, w, k, scene)
+    _set_line_sides(ball, gravity, state.field_edges, state.field_edge_sides, head.fields, w, k, scene)
     _set_arc_sides(state, w, k)
     _set_part_sides(state, w, k)
     _set_ring_sides(state, w, k)
@@ -60,12 +60,14 @@ def _set_arc_sides(state: State, w: int, k: int) -> None:
         state.arc_sides[w, k, i] = _side_of_circle(ball, gravity_of(state, scene), arc.x, arc.y, arc.outer)
 
 
-@where("rings")
+@where("circle_sensors")
 def _set_ring_sides(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    for i in range(state.scenes[scene].rings):
-        ring = state.rings[scene, i]
-        state.ring_sides[w, k, i] = _side_of_circle(ball, gravity_of(state, scene), ring.x, ring.y, ring.radius)
+    for i in range(state.scenes[scene].circle_sensors):
+        ring = state.circle_sensors[scene, i]
+        state.circle_sensor_sides[w, k, i] = _side_of_circle(
+            ball, gravity_of(state, scene), ring.x, ring.y, ring.radius
+        )
 
 
 @function
@@ -77,7 +79,7 @@ def _side_of_circle(ball: Record, gravity: Vector, x: float, y: float, radius: f
 
 @function
 def _side(ball: Record, gravity: Vector, height: float, nx: float, ny: float) -> int:
-    if abs(height) <= ball.slack:
+    if abs(height) <= ball.tolerance:
         height = _lean(ball, gravity, nx, ny)
     return 1 if height >= 0.0 else -1
 

@@ -17,15 +17,15 @@ from bounce_env.engine.tolerances import ROLLING
 
 
 @function
-def on_capsule(core: Core, x: float, y: float, side: int, slack: float) -> tuple[float, float, float, float]:
+def on_capsule(core: Core, x: float, y: float, side: int, tolerance: float) -> tuple[float, float, float, float]:
     """Return how a capsule's core lies to the point (x, y) [m]: unit normal, distance [m], and the nearest point.
 
     As (nx, ny, distance, nearest), the last along the core; distances are taken from the core's own (x, y).
-    side: on which side a ball of no radius is of a core without thickness, of which the ends count up to the slack, and
-    to which the normal points; the distance is negative on the other one. Otherwise 0.
+    side: on which side a ball of no radius is of a core without thickness, whose ends count up to the tolerance, and to
+    which the normal points; the distance is negative on the other one. Otherwise 0.
     """
     dx, dy = x - core.x, y - core.y
-    along, more = dx * core.ux + dy * core.uy, slack if side != 0 else 0.0
+    along, more = dx * core.ux + dy * core.uy, tolerance if side != 0 else 0.0
     if core.back - more <= along <= core.front + more:
         height = dy * core.ux - dx * core.uy
         facing = 1.0 if (height >= 0.0 if side == 0 else side > 0) else -1.0
@@ -38,7 +38,7 @@ def on_capsule(core: Core, x: float, y: float, side: int, slack: float) -> tuple
 
 @function
 def collect_touches(state: State, w: int, k: int) -> None:
-    """List in `state.touches[w]` all surfaces that ball `k` touches within its slack, `ball.touched` of them."""
+    """List in `state.touches[w]` all surfaces that ball `k` touches within its tolerance, `ball.touched` of them."""
     state.balls[w, k].touched = 0
     _touch_faces(state, w, k)
     _touch_circles(state, w, k)
@@ -63,14 +63,23 @@ def keep_outside(ball: Record, touches: Table, w: int) -> None:
 
 
 @function
-def _add(state: State, w: int, k: int, nx: float, ny: float, gap: float, bend: float, element: int, face: int) -> bool:
+def _add(
+    state: State, w: int, k: int, nx: float, ny: float, gap: float, curvature: float, element: int, face: int
+) -> bool:
     """Add a standing surface to the list, if there is room for it; returns whether there was."""
     ball = state.balls[w, k]
     if ball.touched == state.touches.shape[1]:
         return False
     touch = state.touches[w, ball.touched]
     touch.nx, touch.ny, touch.ux, touch.uy = nx, ny, 0.0, 0.0
-    touch.gap, touch.bend, touch.element, touch.face, touch.part, touch.moves = gap, bend, element, face, -1, 0
+    touch.gap, touch.curvature, touch.element, touch.face, touch.part, touch.moves = (
+        gap,
+        curvature,
+        element,
+        face,
+        -1,
+        0,
+    )
     ball.touched += 1
     return True
 
@@ -82,17 +91,17 @@ def _touch_faces(state: State, w: int, k: int) -> None:
         face = state.faces[scene, i]
         dx, dy = ball.x - face.x, ball.y - face.y
         height = dy * face.ux - dx * face.uy
-        if abs(height) > face.reach + ball.slack:
+        if abs(height) > face.offset_radius + ball.tolerance:
             continue
-        if not is_beside(line_of(face), dx, dy, ball.slack) or is_off(state, w, face.element):
+        if not is_beside(line_of(face), dx, dy, ball.tolerance) or is_off(state, w, face.element):
             continue
         facing = float(side_on(state.face_sides, w, k, i))
         if facing == 0.0:
             facing = 1.0 if height >= 0.0 else -1.0
         # A ball may be half-way through a one-way wall.
-        if is_one_way(state, scene, i) and (facing < 0.0 or height < face.reach - ball.slack):
+        if is_one_way(state, scene, i) and (facing < 0.0 or height < face.offset_radius - ball.tolerance):
             continue
-        gap = facing * height - face.reach
+        gap = facing * height - face.offset_radius
         if _add(state, w, k, -facing * face.uy, facing * face.ux, gap, 0.0, face.element, i):
             along = dx * face.ux + dy * face.uy
             touch = state.touches[w, ball.touched - 1]
@@ -106,13 +115,13 @@ def _touch_circles(state: State, w: int, k: int) -> None:
     for i in range(state.scenes[scene].circles):
         circle = state.circles[scene, i]
         dx, dy = ball.x - circle.x, ball.y - circle.y
-        reach = circle.reach + ball.slack
+        offset_radius = circle.offset_radius + ball.tolerance
         square = dx * dx + dy * dy
-        if square > reach * reach or is_off(state, w, circle.element):
+        if square > offset_radius * offset_radius or is_off(state, w, circle.element):
             continue
         distance = math.sqrt(square)
-        gap = distance - circle.reach
-        _add(state, w, k, dx / distance, dy / distance, gap, 1.0 / circle.reach, circle.element, -1)
+        gap = distance - circle.offset_radius
+        _add(state, w, k, dx / distance, dy / distance, gap, 1.0 / circle.offset_radius, circle.element, -1)
 
 
 @where("arcs")
@@ -122,18 +131,18 @@ def _touch_arcs(state: State, w: int, k: int) -> None:
         arc = state.arcs[scene, i]
         dx, dy = ball.x - arc.x, ball.y - arc.y
         distance = math.sqrt(dx * dx + dy * dy)
-        outside = abs(distance - arc.outer) <= ball.slack
-        inside = abs(distance - arc.inner) <= ball.slack and arc.inner > 0.0
+        outside = abs(distance - arc.outer) <= ball.tolerance
+        inside = abs(distance - arc.inner) <= ball.tolerance and arc.inner > 0.0
         side = side_on(state.arc_sides, w, k, i)
         if side != 0:
             outside, inside = outside and side > 0, inside and side < 0
-        if not (outside or inside) or not in_span(arc, dx, dy, ball.slack) or is_off(state, w, arc.element):
+        if not (outside or inside) or not in_span(arc, dx, dy, ball.tolerance) or is_off(state, w, arc.element):
             continue
         facing = 1.0 if outside else -1.0
-        bend = 1.0 / arc.outer if outside else -1.0 / arc.inner
+        curvature = 1.0 / arc.outer if outside else -1.0 / arc.inner
         nx, ny = facing * (dx / distance), facing * (dy / distance)
         gap = distance - arc.outer if outside else arc.inner - distance
-        _add(state, w, k, nx, ny, gap, bend, arc.element, -1)
+        _add(state, w, k, nx, ny, gap, curvature, arc.element, -1)
 
 
 @where("parts")
@@ -144,8 +153,8 @@ def _touch_parts(state: State, w: int, k: int) -> None:
             continue
         part = moving_part(state, w, m)
         core = core_at(part, ball.hi, ball.lo)
-        nx, ny, distance, nearest = on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.slack)
-        if abs(distance) > part.shape.reach + ball.slack or is_off(state, w, part.shape.element):
+        nx, ny, distance, nearest = on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
+        if abs(distance) > part.shape.offset_radius + ball.tolerance or is_off(state, w, part.shape.element):
             continue
         if not _touch_part(state, w, k, m, part, core, nx, ny, distance, nearest):
             return
@@ -159,18 +168,18 @@ def _touch_part(
     """List what a ball touches of part `m`: where the straight side passes into the round end both; False: no room."""
     ball, shape, side = state.balls[w, k], part.shape, side_of_part(state, w, k, m)
     spin, moves = spin_of(part, core)
-    reach = core.front + shape.reach if moves or part.turn != 0 else shape.reach
+    offset_radius = core.front + shape.offset_radius if moves or part.turn != 0 else shape.offset_radius
     vx, vy = surface_velocity(part, core, nearest * core.ux + shape.radius * nx, nearest * core.uy + shape.radius * ny)
     pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
     rest_speed = state.scenes[state.worlds[w].scene].rest_speed
-    least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * reach) * reach))
+    least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * offset_radius) * offset_radius))
     for straight in (True, False):
         if straight and side == 0 and not core.back < nearest < core.front:
             continue
-        if not straight and (side != 0 or core.back + ball.slack < nearest < core.front - ball.slack):
+        if not straight and (side != 0 or core.back + ball.tolerance < nearest < core.front - ball.tolerance):
             continue
-        bend = 0.0 if straight else 1.0 / shape.reach
-        if not _add(state, w, k, nx, ny, distance - shape.reach, bend, shape.element, -1):
+        curvature = 0.0 if straight else 1.0 / shape.offset_radius
+        if not _add(state, w, k, nx, ny, distance - shape.offset_radius, curvature, shape.element, -1):
             return False
         touch = state.touches[w, ball.touched - 1]
         touch.part, touch.ux, touch.uy, touch.least = m, vx, vy, least

@@ -43,15 +43,15 @@ def _meeting(state: State, w: int, k: int, j: int) -> tuple[float, float]:
     of_one, of_other = flight_of(state, one), flight_of(state, other)
     horizon = min(one.end_after - s, other.end_after - t)
     head = state.scenes[state.worlds[w].scene]
-    slack = max(touch_tolerance(of_one, head.extent, s), touch_tolerance(of_other, head.extent, t))
+    tolerance = max(touch_tolerance(of_one, head.extent, s), touch_tolerance(of_other, head.extent, t))
     of_one, of_other = flight_after(of_one, s), flight_after(of_other, t)
     seen = _seen_from_other(of_one, of_other)
-    reach, noise = 2.0 * head.ball_radius, pair_noise(one, other, of_one, of_other, head)
-    closing = -(seen.x * seen.vx + seen.y * seen.vy) / reach
-    if seen.x * seen.x + seen.y * seen.y <= (reach + slack) * (reach + slack):
+    offset_radius, noise = 2.0 * head.ball_radius, pair_noise(one, other, of_one, of_other, head)
+    closing = -(seen.x * seen.vx + seen.y * seen.vy) / offset_radius
+    if seen.x * seen.x + seen.y * seen.y <= (offset_radius + tolerance) * (offset_radius + tolerance):
         if abs(closing) <= noise:
             # They neither close on each other nor come apart by more than rounding.
-            off, turn = _drawn_off(seen, reach), (seen.vx * seen.vx + seen.vy * seen.vy) / reach
+            off, turn = _drawn_off(seen, offset_radius), (seen.vx * seen.vx + seen.vy * seen.vy) / offset_radius
             if off >= 0.0:
                 return math.inf, 0.0
             # Of balls that are a little deep in each other a search would find no hit. Pressed for sure, though one
@@ -61,7 +61,7 @@ def _meeting(state: State, w: int, k: int, j: int) -> tuple[float, float]:
         elif closing > 0.0 and may_wait(state.worlds[w], closing, hi, lo):
             after = CORNER * ULPS_OF_LENGTH * head.extent / closing
             return later(hi, lo, after) if after <= horizon else (math.inf, 0.0)
-    after = circle_time(seen, reach, slack, horizon)
+    after = circle_time(seen, offset_radius, tolerance, horizon)
     if not after <= horizon or after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
@@ -79,9 +79,9 @@ def _seen_from_other(one: Flight, other: Flight) -> Flight:
 
 
 @where("ax", otherwise=0.0)
-def _drawn_off(seen: Flight, reach: float) -> float:
+def _drawn_off(seen: Flight, offset_radius: float) -> float:
     """The acceleration [m/s^2] that draws a ball off another one at the origin that it touches; < 0: onto it."""
-    return (seen.x * seen.ax + seen.y * seen.ay) / reach
+    return (seen.x * seen.ax + seen.y * seen.ay) / offset_radius
 
 
 @function

@@ -71,9 +71,9 @@ def _plan_zones(state: State, w: int, k: int, flight: Flight, now: float) -> Non
 def _is_in_zone(seen: Flight, part: MovingPart) -> bool:
     shape = part.shape
     if part.turn != 0:
-        border = ZONE_MARGIN * (shape.front + shape.reach)
+        border = ZONE_MARGIN * (shape.front + shape.offset_radius)
         return seen.x * seen.x + seen.y * seen.y <= border * border
-    return abs(seen.y * shape.ux - seen.x * shape.uy) <= ZONE_MARGIN * shape.reach
+    return abs(seen.y * shape.ux - seen.x * shape.uy) <= ZONE_MARGIN * shape.offset_radius
 
 
 @function
@@ -81,9 +81,9 @@ def _zone_change(ball: Record, seen: Flight, part: MovingPart, inside: bool, aft
     """When the ball next passes the border of a part's zone, from the flight's start, no earlier than `after` [s]."""
     shape = part.shape
     if part.turn != 0:
-        border = Circle(ZONE_MARGIN * (shape.front + shape.reach), 1.0 if inside else -1.0)
-        return crossing_time(seen, None, border, after == 0.0, ball.slack, after, ball.end_after)
-    return _strip_change(seen, shape.ux, shape.uy, ZONE_MARGIN * shape.reach, inside, after)
+        border = Circle(ZONE_MARGIN * (shape.front + shape.offset_radius), 1.0 if inside else -1.0)
+        return crossing_time(seen, None, border, after == 0.0, ball.tolerance, after, ball.end_after)
+    return _strip_change(seen, shape.ux, shape.uy, ZONE_MARGIN * shape.offset_radius, inside, after)
 
 
 @function
@@ -124,39 +124,41 @@ def meet_part(
     horizon = min(min(ball.end_after, leaves_after) - t, since(stop_hi, stop_lo, hi, lo))
     core = core_at(part, hi, lo)
     seen = seen_from(flight_after(flight, t), core.x, core.y)
-    slack = touch_tolerance(flight, extent, t)
+    tolerance = touch_tolerance(flight, extent, t)
     if is_dragged(part):
-        after = _meet_wall(part, seen, core, side, slack, horizon)
+        after = _meet_wall(part, seen, core, side, tolerance, horizon)
     elif part.turn != 0 and motion.velocity != 0.0:
         spin = part.turn * motion.velocity
-        after = rotating_capsule_time(seen, core, shape.reach, spin, slack, horizon)
+        after = rotating_capsule_time(seen, core, shape.offset_radius, spin, tolerance, horizon)
     else:
         if part.turn == 0:
             seen = slowed_by(seen, motion.velocity * core.ux, motion.velocity * core.uy)
-        after = capsule_time(seen, core, shape.reach, slack, horizon)
+        after = capsule_time(seen, core, shape.offset_radius, tolerance, horizon)
     if after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
 
 
 @where("ends", otherwise=math.inf)
-def _meet_wall(part: MovingPart, flight: Flight, core: Core, side: int, slack: float, horizon: float) -> float:
+def _meet_wall(part: MovingPart, flight: Flight, core: Core, side: int, tolerance: float, horizon: float) -> float:
     """Hit of a dragged wall, seen from where its start is now: a duration [s], or inf."""
-    ends, reach = part.ends, part.shape.reach
+    ends, offset_radius = part.ends, part.shape.offset_radius
     seen = slowed_by(flight, ends.vx0, ends.vy0)
     ex, ey = ends.vx1 - ends.vx0, ends.vy1 - ends.vy0
     if ex != 0.0 or ey != 0.0:
         dx, dy = core.front * core.ux, core.front * core.uy
-        if not _comes_near(seen, dx, dy, ex, ey, reach + slack, horizon):
+        if not _comes_near(seen, dx, dy, ex, ey, offset_radius + tolerance, horizon):
             return math.inf
-        return stretching_wall_time(seen, dx, dy, ex, ey, reach, side, slack, horizon)
-    if reach > 0.0:
-        return capsule_time(seen, core, reach, slack, horizon)
-    return face_time(seen, Line(core.ux, core.uy, core.front, reach), side, slack, horizon)
+        return stretching_wall_time(seen, dx, dy, ex, ey, offset_radius, side, tolerance, horizon)
+    if offset_radius > 0.0:
+        return capsule_time(seen, core, offset_radius, tolerance, horizon)
+    return face_time(seen, Line(core.ux, core.uy, core.front, offset_radius), side, tolerance, horizon)
 
 
 @function
-def _comes_near(flight: Flight, dx: float, dy: float, ex: float, ey: float, reach: float, horizon: float) -> bool:
+def _comes_near(
+    flight: Flight, dx: float, dy: float, ex: float, ey: float, offset_radius: float, horizon: float
+) -> bool:
     """Whether the boxes that a ball and a wall from the origin along (dx, dy), changing by (ex, ey), sweep meet.
 
     Most walls are rejected by that alone. Written so that infinite or undefined borders reject nothing.
@@ -164,8 +166,8 @@ def _comes_near(flight: Flight, dx: float, dy: float, ex: float, ey: float, reac
     left, right = swept(flight.x, flight.vx, flight.ax, horizon)
     below, above = swept(flight.y, flight.vy, flight.ay, horizon)
     sx, sy = dx + ex * horizon, dy + ey * horizon
-    apart = left > max(dx, sx, 0.0) + reach or right < min(dx, sx, 0.0) - reach
-    return not (apart or below > max(dy, sy, 0.0) + reach or above < min(dy, sy, 0.0) - reach)
+    apart = left > max(dx, sx, 0.0) + offset_radius or right < min(dx, sx, 0.0) - offset_radius
+    return not (apart or below > max(dy, sy, 0.0) + offset_radius or above < min(dy, sy, 0.0) - offset_radius)
 
 
 @function

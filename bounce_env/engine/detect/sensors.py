@@ -6,7 +6,7 @@ from typing import NamedTuple
 from bounce_env.engine.compile.jit import function, where
 from bounce_env.engine.impact.arc import entry_time
 from bounce_env.engine.impact.line import Line, facing_time, line_time
-from bounce_env.engine.memory.records import FIELD_EDGE, LINE, RING_ENTRY
+from bounce_env.engine.memory.records import CIRCLE_ENTRY, FIELD_BORDER, LINE_SENSOR
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import Flight, seen_from
 from bounce_env.engine.tolerances import ULP
@@ -26,7 +26,7 @@ def next_crossing(state: State, w: int, k: int, flight: Flight, last: Crossing) 
 
     Crossings at one instant come in the order of kinds (lines, circles, borders of fields), and in that of elements.
     """
-    best = Crossing(math.inf, LINE, -1)
+    best = Crossing(math.inf, LINE_SENSOR, -1)
     best = _first_line(state, w, k, flight, last, best)
     best = _first_circle(state, w, k, flight, last, best)
     return _first_edge(state, w, k, flight, last, best)
@@ -48,34 +48,34 @@ def _first_line(state: State, w: int, k: int, flight: Flight, last: Crossing, be
         sensor, side = state.sensors[scene, i], state.sensor_sides[w, k, i]
         seen, line = seen_from(flight, sensor.x, sensor.y), Line(sensor.ux, sensor.uy, sensor.length, 0.0)
         for facing in (1.0, -1.0):
-            t = facing_time(seen, line, facing, side, ball.slack, ball.end_after)
-            if t < best.after and _follows(t, LINE, i, last):
-                best = Crossing(t, LINE, i)
+            t = facing_time(seen, line, facing, side, ball.tolerance, ball.end_after)
+            if t < best.after and _follows(t, LINE_SENSOR, i, last):
+                best = Crossing(t, LINE_SENSOR, i)
     return best
 
 
-@where("rings", otherwise=_nothing_earlier)
+@where("circle_sensors", otherwise=_nothing_earlier)
 def _first_circle(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    for i in range(state.scenes[scene].rings):
-        ring, outside = state.rings[scene, i], state.ring_sides[w, k, i] > 0
+    for i in range(state.scenes[scene].circle_sensors):
+        ring, outside = state.circle_sensors[scene, i], state.circle_sensor_sides[w, k, i] > 0
         # A ball may enter a circle twice in one flight: what came before is no answer.
-        tie = _follows(last.after, RING_ENTRY, i, last)
+        tie = _follows(last.after, CIRCLE_ENTRY, i, last)
         after = last.after - abs(last.after) * ULP if tie else last.after
-        t = entry_time(seen_from(flight, ring.x, ring.y), ring.radius, outside, ball.slack, after, ball.end_after)
-        if t < best.after and _follows(t, RING_ENTRY, i, last):
-            best = Crossing(t, RING_ENTRY, i)
+        t = entry_time(seen_from(flight, ring.x, ring.y), ring.radius, outside, ball.tolerance, after, ball.end_after)
+        if t < best.after and _follows(t, CIRCLE_ENTRY, i, last):
+            best = Crossing(t, CIRCLE_ENTRY, i)
     return best
 
 
-@where("edges", otherwise=_nothing_earlier)
+@where("field_edges", otherwise=_nothing_earlier)
 def _first_edge(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].fields):
-        edge, side = state.edges[scene, i], state.edge_sides[w, k, i]
+        edge, side = state.field_edges[scene, i], state.field_edge_sides[w, k, i]
         seen, line = seen_from(flight, edge.x, edge.y), Line(edge.ux, edge.uy, math.inf, 0.0)
         for facing in (1.0, -1.0):
-            t = line_time(seen, line, facing, side, ball.slack)
-            if t <= ball.end_after and t < best.after and _follows(t, FIELD_EDGE, i, last):
-                best = Crossing(t, FIELD_EDGE, i)
+            t = line_time(seen, line, facing, side, ball.tolerance)
+            if t <= ball.end_after and t < best.after and _follows(t, FIELD_BORDER, i, last):
+                best = Crossing(t, FIELD_BORDER, i)
     return best

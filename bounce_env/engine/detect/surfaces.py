@@ -15,7 +15,7 @@ from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 @function
 def line_of(face: Record) -> Line:
     """Return the wall of a face, as seen from its start."""
-    return Line(face.ux, face.uy, face.length, face.reach)
+    return Line(face.ux, face.uy, face.length, face.offset_radius)
 
 
 @where("faces", otherwise=(0.0, 0.0))
@@ -34,7 +34,7 @@ def wall_normal(state: State, w: int, k: int, i: int) -> tuple[float, float]:
 def _is_level(ball: Record, flight: Flight, face: Record) -> bool:
     """Whether a ball touches a wall and keeps doing so: it moves along it, and nothing pulls it off."""
     height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
-    if abs(abs(height) - face.reach) > ball.slack:
+    if abs(abs(height) - face.offset_radius) > ball.tolerance:
         return False
     rate = ball.vy * face.ux - ball.vx * face.uy
     if abs(rate) > 4.0 * ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy)):
@@ -69,9 +69,9 @@ def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: floa
             continue
         from_start, side = seen_from(flight, face.x, face.y), side_on(state.face_sides, w, k, i)
         if is_one_way(state, scene, i):
-            t = facing_time(from_start, line_of(face), 1.0, side, ball.slack, best)
+            t = facing_time(from_start, line_of(face), 1.0, side, ball.tolerance, best)
         else:
-            t = face_time(from_start, line_of(face), side, ball.slack, best)
+            t = face_time(from_start, line_of(face), side, ball.tolerance, best)
         if t < best and not _slides_over(ball, flight, face, nx, ny, t):
             best, index = t, i
     return best, index
@@ -80,18 +80,18 @@ def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: floa
 @function
 def _slides_over(ball: Record, flight: Flight, face: Record, nx: float, ny: float, t: float) -> bool:
     """Whether a point that slides on a wall with normal (nx, ny) passes, after `t` seconds, an end beneath it."""
-    if not is_sliding(ball) or face.reach > 0.0:
+    if not is_sliding(ball) or face.offset_radius > 0.0:
         return False
     x, y = place_after(flight, t)
     along = (x - face.x) * face.ux + (y - face.y) * face.uy
     rise = face.ux * nx + face.uy * ny
-    return (along <= ball.slack and rise <= 0.0) or (along >= face.length - ball.slack and rise >= 0.0)
+    return (along <= ball.tolerance and rise <= 0.0) or (along >= face.length - ball.tolerance and rise >= 0.0)
 
 
 @function
-def _slides_past(ball: Record, nx: float, ny: float, x: float, y: float, reach: float) -> bool:
+def _slides_past(ball: Record, nx: float, ny: float, x: float, y: float, offset_radius: float) -> bool:
     """Whether a ball that slides on a wall with normal (nx, ny) just touches a circle that has it at (x, y)."""
-    return is_sliding(ball) and x * nx + y * ny >= reach - ball.slack
+    return is_sliding(ball) and x * nx + y * ny >= offset_radius - ball.tolerance
 
 
 @where("circles", otherwise=_no_surface)
@@ -108,14 +108,19 @@ def first_circle(
     below, above = swept(flight.y, flight.vy, flight.ay, horizon)
     for i in range(state.scenes[scene].circles):
         circle = state.circles[scene, i]
-        reach = circle.reach + ball.slack
+        offset_radius = circle.offset_radius + ball.tolerance
         # Written so that a box with infinite or undefined borders (an unbounded flight) rejects nothing.
-        if circle.x + reach < left or circle.x - reach > right or circle.y + reach < below or circle.y - reach > above:
+        if (
+            circle.x + offset_radius < left
+            or circle.x - offset_radius > right
+            or circle.y + offset_radius < below
+            or circle.y - offset_radius > above
+        ):
             continue
         seen = seen_from(flight, circle.x, circle.y)
-        if is_off(state, w, circle.element) or _slides_past(ball, nx, ny, seen.x, seen.y, circle.reach):
+        if is_off(state, w, circle.element) or _slides_past(ball, nx, ny, seen.x, seen.y, circle.offset_radius):
             continue
-        t = circle_time(seen, circle.reach, ball.slack, best)
+        t = circle_time(seen, circle.offset_radius, ball.tolerance, best)
         if t < best:
             best, index = t, i
     return best, index
@@ -130,14 +135,19 @@ def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float
     below, above = swept(flight.y, flight.vy, flight.ay, horizon)
     for i in range(state.scenes[scene].arcs):
         arc = state.arcs[scene, i]
-        reach = arc.outer + ball.slack
-        if arc.x + reach < left or arc.x - reach > right or arc.y + reach < below or arc.y - reach > above:
+        offset_radius = arc.outer + ball.tolerance
+        if (
+            arc.x + offset_radius < left
+            or arc.x - offset_radius > right
+            or arc.y + offset_radius < below
+            or arc.y - offset_radius > above
+        ):
             continue
         if is_off(state, w, arc.element):
             continue
         seen = seen_from(flight, arc.x, arc.y)
         past = _slides_past(ball, nx, ny, seen.x, seen.y, arc.outer)
-        t = arc_time(seen, arc, side_on(state.arc_sides, w, k, i), past, ball.slack, best)
+        t = arc_time(seen, arc, side_on(state.arc_sides, w, k, i), past, ball.tolerance, best)
         if t < best:
             best, index = t, i
     return best, index
@@ -172,7 +182,9 @@ def _first_end_of_point(state: State, w: int, k: int, flight: Flight, horizon: f
         if is_off(state, w, face.element) or not _is_level(ball, flight, face):
             continue
         from_start, line = seen_from(flight, face.x, face.y), line_of(face)
-        if not is_beside(line, from_start.x, from_start.y, ball.slack) or leaves_end(from_start, line, ball.slack):
+        if not is_beside(line, from_start.x, from_start.y, ball.tolerance) or leaves_end(
+            from_start, line, ball.tolerance
+        ):
             continue
         t = _way_to_end(flight, face)
         if t < best:

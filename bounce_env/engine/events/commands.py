@@ -63,8 +63,8 @@ def command_flipper(state: State, w: int, m: int, pressed: bool) -> None:
     command(state, w, m, part.up_speed if pressed else -part.down_speed)
 
 
-@where("guides", otherwise=(0.0, 0.0, 0.0, 0.0))
+@where("drag_limits", otherwise=(0.0, 0.0, 0.0, 0.0))
 def reach_box(state: State, w: int, m: int) -> tuple[float, float, float, float]:
     """Return the box in which the ends of dragged wall `m` stay: x_min, y_min, x_max, y_max [m]."""
-    guide = state.guides[state.worlds[w].scene, m]
-    return guide.x0, guide.y0, guide.x1, guide.y1
+    limits = state.drag_limits[state.worlds[w].scene, m]
+    return limits.x0, limits.y0, limits.x1, limits.y1

@@ -7,7 +7,7 @@ from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.detect.pairs import plan_pairs
 from bounce_env.engine.detect.schedule import plan_crossing, resolve_next
 from bounce_env.engine.memory.ledger import Surface, append_crossing, count_hit
-from bounce_env.engine.memory.records import FIELD_EDGE, LINE, OUT
+from bounce_env.engine.memory.records import FIELD_BORDER, LINE_SENSOR, OUT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.fields import accelerate
 from bounce_env.engine.motion.flight import flight_of, fly, place_after, velocity_after
@@ -17,9 +17,9 @@ from bounce_env.engine.motion.flight import flight_of, fly, place_after, velocit
 def cross(state: State, w: int, k: int, ledger: Table) -> None:
     """Process a crossing. The flight goes on as if there were nothing, unless it is a drain or changes the pull."""
     kind = state.balls[w, k].sensor_kind
-    if kind == FIELD_EDGE:
+    if kind == FIELD_BORDER:
         _cross_edge(state, w, k)
-    elif kind == LINE:
+    elif kind == LINE_SENSOR:
         _cross_line(state, w, k, ledger)
     else:
         _enter_ring(state, w, k, ledger)
@@ -36,11 +36,11 @@ def _cross_line(state: State, w: int, k: int, ledger: Table) -> None:
     _report(state, w, k, sensor.drain, surface, ledger)
 
 
-@where("rings")
+@where("circle_sensors")
 def _enter_ring(state: State, w: int, k: int, ledger: Table) -> None:
     ball = state.balls[w, k]
-    ring = state.rings[state.worlds[w].scene, ball.sensor_index]
-    state.ring_sides[w, k, ball.sensor_index] = -1
+    ring = state.circle_sensors[state.worlds[w].scene, ball.sensor_index]
+    state.circle_sensor_sides[w, k, ball.sensor_index] = -1
     x, y = place_after(flight_of(state, ball), ball.sensor_after)
     dx, dy = x - ring.x, y - ring.y
     distance = math.sqrt(dx * dx + dy * dy)
@@ -65,15 +65,15 @@ def _report(state: State, w: int, k: int, drain: int, surface: Surface, ledger: 
         plan_crossing(state, w, k, after, ball.sensor_kind, ball.sensor_index)
 
 
-@where("edges")
+@where("field_edges")
 def _cross_edge(state: State, w: int, k: int) -> None:
     ball = state.balls[w, k]
     after, index = ball.sensor_after, ball.sensor_index
-    state.edge_sides[w, k, index] = -state.edge_sides[w, k, index]
+    state.field_edge_sides[w, k, index] = -state.field_edge_sides[w, k, index]
     gx, gy = ball.gx, ball.gy
     accelerate(state, w, k)
     if ball.gx == gx and ball.gy == gy:
-        plan_crossing(state, w, k, after, FIELD_EDGE, index)
+        plan_crossing(state, w, k, after, FIELD_BORDER, index)
         return
     new_gx, new_gy = ball.gx, ball.gy
     end_flight(state, w, k, after, ball.next_hi, ball.next_lo)

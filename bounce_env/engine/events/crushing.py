@@ -88,10 +88,10 @@ def meet_crushed(state: State, w: int, k: int, m: int, ledger: Table) -> None:
 def _approach(ball: Record, part: MovingPart, side: int, hi: float, lo: float) -> tuple[float, float]:
     """How far [m] a part is from a crushed ball at an instant, and how fast [m/s] it closes; 0 within rounding."""
     core = core_at(part, hi, lo)
-    nx, ny, distance, nearest = on_capsule(core, ball.x, ball.y, side, ball.slack)
+    nx, ny, distance, nearest = on_capsule(core, ball.x, ball.y, side, ball.tolerance)
     vx, vy = surface_velocity(part, core, nearest * core.ux, nearest * core.uy)
     closing = vx * nx + vy * ny
-    return distance - part.shape.reach, closing if abs(closing) > ULPS_OF_SPEED * (abs(vx) + abs(vy)) else 0.0
+    return distance - part.shape.offset_radius, closing if abs(closing) > ULPS_OF_SPEED * (abs(vx) + abs(vy)) else 0.0
 
 
 @where("parts")

@@ -24,7 +24,7 @@ def place(state: State, w: int, k: int, x: float, y: float, vx: float, vy: float
     ball.contact, ball.rides, ball.support, ball.settling, ball.rolling = FLYING, -1, -1, 0, -1
     ball.struck, ball.squeezes, ball.vague = -1, 0, 0.0
     ball.confined, ball.strayed, ball.legs = 0, 0.0, 0
-    ball.slack = ULPS_OF_LENGTH * state.scenes[world.scene].extent
+    ball.tolerance = ULPS_OF_LENGTH * state.scenes[world.scene].extent
     set_initial_sides(state, w, k)
     accelerate(state, w, k)
     ball.ax, ball.ay = ball.gx, ball.gy

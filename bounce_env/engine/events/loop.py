@@ -173,7 +173,7 @@ def _hit(state: State, w: int, k: int, ledger: Table) -> None:
 def _is_over_at_once(ball: Record, t: float) -> bool:
     """Whether in `t` seconds of flight neither the ball's place nor its velocity has changed by more than rounding."""
     speed, pull = abs(ball.vx) + abs(ball.vy), abs(ball.gx) + abs(ball.gy)
-    return speed * t <= ball.slack and pull * t <= ULPS_OF_SPEED * speed
+    return speed * t <= ball.tolerance and pull * t <= ULPS_OF_SPEED * speed
 
 
 @function

@@ -52,7 +52,7 @@ def resume_part(state: State, w: int, m: int) -> None:
 @where("ends")
 def _set_wall_off(state: State, w: int, m: int) -> None:
     world = state.worlds[w]
-    set_ends_off(state.motions[w, m], state.ends[w, m], state.guides[world.scene, m], world.time_hi, world.time_lo)
+    set_ends_off(state.motions[w, m], state.ends[w, m], state.drag_limits[world.scene, m], world.time_hi, world.time_lo)
 
 
 @function
@@ -83,8 +83,8 @@ def reset_parts(state: State, w: int) -> None:
 
 @where("ends")
 def _reset_ends(state: State, w: int, m: int) -> None:
-    ends, guide = state.ends[w, m], state.guides[state.worlds[w].scene, m]
-    ends.x0, ends.y0, ends.x1, ends.y1 = guide.sx, guide.sy, guide.ex, guide.ey
+    ends, limits = state.ends[w, m], state.drag_limits[state.worlds[w].scene, m]
+    ends.x0, ends.y0, ends.x1, ends.y1 = limits.sx, limits.sy, limits.ex, limits.ey
     ends.vx0, ends.vy0, ends.vx1, ends.vy1 = 0.0, 0.0, 0.0, 0.0
     ends.cx0, ends.cy0, ends.cx1, ends.cy1 = 0.0, 0.0, 0.0, 0.0
 
@@ -177,12 +177,12 @@ def _halt_wall(state: State, w: int, m: int, blocked: bool, hi: float, lo: float
     The ledger has a row for each of its two ends.
     """
     world, motion, ends = state.worlds[w], state.motions[w, m], state.ends[w, m]
-    guide, element = state.guides[world.scene, m], state.parts[world.scene, m].element
+    limits, element = state.drag_limits[world.scene, m], state.parts[world.scene, m].element
     start, end = (ends.vx0, ends.vy0), (ends.vx1, ends.vy1)
     if blocked:
-        move_ends(motion, ends, guide, hi, lo)
+        move_ends(motion, ends, limits, hi, lo)
         stop_ends(motion, ends)
     else:
-        next_stop_of_ends(motion, ends, guide, hi, lo)
+        next_stop_of_ends(motion, ends, limits, hi, lo)
     append_stop(ledger, world, element, hi, (ends.x0, ends.y0), start, (ends.vx0, ends.vy0))
     append_stop(ledger, world, element, hi, (ends.x1, ends.y1), end, (ends.vx1, ends.vy1))

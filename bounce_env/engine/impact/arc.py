@@ -30,13 +30,13 @@ from bounce_env.engine.tolerances import PRESSING, WEIGHTLESS
 class Circle(NamedTuple):
     """A circle about the origin: the distance [m] at which it is crossed, rising if `sense` is 1.0, falling if -1.0."""
 
-    reach: float
+    offset_radius: float
     sense: float
 
 
 @function
-def in_span(arc: Any, dx: float, dy: float, slack: float) -> bool:
-    """Return whether the point at (dx, dy) [m] from the centre lies beside the arc, ends included within `slack` [m].
+def in_span(arc: Any, dx: float, dy: float, tolerance: float) -> bool:
+    """Return whether the point at (dx, dy) [m] from the centre lies beside the arc, ends included within a tolerance.
 
     `arc` is an ARC, or None for a circle that is no arc.
     """
@@ -47,35 +47,35 @@ def in_span(arc: Any, dx: float, dy: float, slack: float) -> bool:
     from_start = arc.sx * dy - arc.sy * dx
     to_end = dx * arc.ey - dy * arc.ex
     if arc.span == MINOR:
-        return from_start >= -slack and to_end >= -slack
+        return from_start >= -tolerance and to_end >= -tolerance
     # Of a span of more than half a turn the opening is the smaller part.
-    return not (to_end < -slack and from_start < -slack)
+    return not (to_end < -tolerance and from_start < -tolerance)
 
 
 @function
-def arc_time(flight: Flight, arc: Record, side: int, inside_only: bool, slack: float, horizon: float) -> float:
+def arc_time(flight: Flight, arc: Record, side: int, inside_only: bool, tolerance: float, horizon: float) -> float:
     """Return the earlier hit of the arc's two sides before `horizon` [s], or inf.
 
     `side` is where a ball of no radius is while it touches: 1 outside, -1 inside; 0 for a disc, whose centre tells.
     """
     t = math.inf
     if not inside_only:
-        t = crossing_time(flight, arc, Circle(arc.outer, -1.0), side != -1, slack, -1.0, horizon)
+        t = crossing_time(flight, arc, Circle(arc.outer, -1.0), side != -1, tolerance, -1.0, horizon)
     if arc.inner > 0.0:
         end = min(t, horizon)
-        t = min(t, crossing_time(flight, arc, Circle(arc.inner, 1.0), side != 1, slack, -1.0, end))
+        t = min(t, crossing_time(flight, arc, Circle(arc.inner, 1.0), side != 1, tolerance, -1.0, end))
     return t
 
 
 @function
-def entry_time(flight: Flight, radius: float, outside: bool, slack: float, after: float, horizon: float) -> float:
+def entry_time(flight: Flight, radius: float, outside: bool, tolerance: float, after: float, horizon: float) -> float:
     """Return when a point next enters a circle about the origin, after `after` [s] and before `horizon`, or inf."""
-    return crossing_time(flight, None, Circle(radius, -1.0), outside, slack, after, horizon)
+    return crossing_time(flight, None, Circle(radius, -1.0), outside, tolerance, after, horizon)
 
 
 @routine
 def crossing_time(
-    flight: Flight, arc: Any, circle: Circle, armed: bool, slack: float, after: float, horizon: float
+    flight: Flight, arc: Any, circle: Circle, armed: bool, tolerance: float, after: float, horizon: float
 ) -> float:
     """Return when the distance from the centre next crosses that of the circle beside the arc.
 
@@ -83,35 +83,35 @@ def crossing_time(
     side from which that is a hit.
     """
     distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
-    gap = -circle.sense * (distance - circle.reach)
-    touching = abs(gap) <= slack
+    gap = -circle.sense * (distance - circle.offset_radius)
+    touching = abs(gap) <= tolerance
     approach = circle.sense * (flight.x * flight.vx + flight.y * flight.vy)
-    slow = slow_on_circle(flight, circle.reach, slack) * distance
-    if touching and armed and approach > slow and after < 0.0 and in_span(arc, flight.x, flight.y, slack):
-        wait = _until_nearest(flight, circle.sense, slack)
+    slow = slow_on_circle(flight, circle.offset_radius, tolerance) * distance
+    if touching and armed and approach > slow and after < 0.0 and in_span(arc, flight.x, flight.y, tolerance):
+        wait = _until_nearest(flight, circle.sense, tolerance)
         return wait if wait > 0.0 else max(gap, 0.0) * distance / approach
     still = touching and abs(approach) <= slow
-    if still and armed and after < 0.0 and _sinks(flight, circle.sense) and in_span(arc, flight.x, flight.y, slack):
+    if still and armed and after < 0.0 and _sinks(flight, circle.sense) and in_span(arc, flight.x, flight.y, tolerance):
         return 0.0
-    return _crossing(flight, arc, circle, touching, still, slack, after, horizon)
+    return _crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
 
 
 @function
-def _until_nearest(flight: Flight, sense: float, slack: float) -> float:
+def _until_nearest(flight: Flight, sense: float, tolerance: float) -> float:
     """How long [s] until a point that touches a circle is nearest, if it does so in passing (see `grazes`); else 0."""
     distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
     closing = sense * (flight.x * flight.vx + flight.y * flight.vy) / distance
     opening = -sense * bending(flight)
-    if closing > 0.0 and opening > 0.0 and grazes(closing * closing, opening, slack):
+    if closing > 0.0 and opening > 0.0 and grazes(closing * closing, opening, tolerance):
         return closing / opening
     return 0.0
 
 
 @function
-def _touches_at(flight: Flight, arc: Any, reach: float, t: float, slack: float) -> bool:
+def _touches_at(flight: Flight, arc: Any, offset_radius: float, t: float, tolerance: float) -> bool:
     """Whether a ball touches after `t` seconds, beside the arc."""
     x, y = place_after(flight, t)
-    return abs(math.sqrt(x * x + y * y) - reach) <= slack and in_span(arc, x, y, slack)
+    return abs(math.sqrt(x * x + y * y) - offset_radius) <= tolerance and in_span(arc, x, y, tolerance)
 
 
 @function
@@ -129,22 +129,29 @@ def _sinks(flight: Flight, sense: float) -> bool:
 
 @function
 def _straight(
-    flight: Flight, arc: Any, circle: Circle, touching: bool, still: bool, slack: float, after: float, horizon: float
+    flight: Flight,
+    arc: Any,
+    circle: Circle,
+    touching: bool,
+    still: bool,
+    tolerance: float,
+    after: float,
+    horizon: float,
 ) -> float:
     """On a straight flight: the smaller root is where the distance falls, the larger where it rises."""
     x, y, vx, vy, _, _ = flight
-    reach = circle.reach
+    offset_radius = circle.offset_radius
     square = vx * vx + vy * vy
     half = x * vx + y * vy
     if still:
         return math.inf
     cross = x * vy - y * vx
-    inner = square * reach * reach - cross * cross
+    inner = square * offset_radius * offset_radius - cross * cross
     if inner <= 0.0:
         return math.inf
     root = math.sqrt(inner)
     distance = math.sqrt(x * x + y * y)
-    rest = 0.0 if touching else (distance - reach) * (distance + reach)
+    rest = 0.0 if touching else (distance - offset_radius) * (distance + offset_radius)
     # Each root is taken from the form that adds two terms of one sign.
     if circle.sense > 0.0:
         t = (root - half) / square if half < 0.0 else -rest / (root + half)
@@ -152,31 +159,45 @@ def _straight(
         t = rest / (root - half) if half < 0.0 else -(root + half) / square
     if touching and t * square <= root:  # the root at the start, of which the touch has been told
         return math.inf
-    t += _until_nearest(Flight(x + vx * t, y + vy * t, vx, vy, None, None), circle.sense, slack)
-    if t < 0.0 or t <= after or t > horizon or not in_span(arc, x + vx * t, y + vy * t, slack):
+    t += _until_nearest(Flight(x + vx * t, y + vy * t, vx, vy, None, None), circle.sense, tolerance)
+    if t < 0.0 or t <= after or t > horizon or not in_span(arc, x + vx * t, y + vy * t, tolerance):
         return math.inf
     return t
 
 
 @where("ax", otherwise=_straight)
 def _crossing(
-    flight: Flight, arc: Any, circle: Circle, touching: bool, still: bool, slack: float, after: float, horizon: float
+    flight: Flight,
+    arc: Any,
+    circle: Circle,
+    touching: bool,
+    still: bool,
+    tolerance: float,
+    after: float,
+    horizon: float,
 ) -> float:
     if abs(flight.ax) + abs(flight.ay) < WEIGHTLESS:
-        return _straight(flight, arc, circle, touching, still, slack, after, horizon)
-    return _curved(flight, arc, circle, touching, still, slack, after, horizon)
+        return _straight(flight, arc, circle, touching, still, tolerance, after, horizon)
+    return _curved(flight, arc, circle, touching, still, tolerance, after, horizon)
 
 
 @function
 def _curved(
-    flight: Flight, arc: Any, circle: Circle, touching: bool, still: bool, slack: float, after: float, horizon: float
+    flight: Flight,
+    arc: Any,
+    circle: Circle,
+    touching: bool,
+    still: bool,
+    tolerance: float,
+    after: float,
+    horizon: float,
 ) -> float:
     """On a parabola: all crossings in order, up to the first beside the arc."""
-    reach, sense = circle
-    c = distance_polynomial(flight, reach)
+    offset_radius, sense = circle
+    c = distance_polynomial(flight, offset_radius)
     if touching:
         # What is left of a gap is no way to go: the hit is where the ball is as near again.
-        c, reach = without_root_at_zero(c), math.sqrt(flight.x * flight.x + flight.y * flight.y)
+        c, offset_radius = without_root_at_zero(c), math.sqrt(flight.x * flight.x + flight.y * flight.y)
     if still:
         c = without_root_at_zero(c)
     borders = monotone_borders(c, horizon)
@@ -184,23 +205,23 @@ def _curved(
         start, end = borders[i], borders[i + 1]
         if not (sense * value(c, start) < 0.0 <= sense * value(c, end)):
             turns = sense < 0.0 and not touching and start < end < horizon and end > after
-            if turns and _touches_at(flight, arc, reach, end, slack):
+            if turns and _touches_at(flight, arc, offset_radius, end, tolerance):
                 return end
             continue
         t = root_between(c, start, end)
         now = flight_after(flight, t)
         distance = math.sqrt(now.x * now.x + now.y * now.y)
         rate = (now.x * now.vx + now.y * now.vy) / distance
-        wait = _until_nearest(now, sense, slack)
+        wait = _until_nearest(now, sense, tolerance)
         if wait > 0.0:
             t += wait
         elif sense * rate > 0.0:
             # The polynomial knows the gap through its square only; a step on the distance itself mends the last digits.
             # Where the distance bends within the step there are none to mend: the gap is rounding, the rate next to it.
-            step = (distance - reach) / rate
+            step = (distance - offset_radius) / rate
             if abs(step * bending(now)) <= abs(rate):
                 t = min(max(t - step, start), end)
         x, y = place_after(flight, t)
-        if t > after and in_span(arc, x, y, slack):
+        if t > after and in_span(arc, x, y, tolerance):
             return t
     return math.inf

@@ -10,14 +10,14 @@ from bounce_env.engine.motion.parts import Core
 
 
 @routine
-def capsule_time(flight: Flight, core: Core, reach: float, slack: float, horizon: float) -> float:
+def capsule_time(flight: Flight, core: Core, offset_radius: float, tolerance: float, horizon: float) -> float:
     """Return the hit of a capsule, as a duration [s] up to `horizon`, or inf; the flight is seen from (core.x, core.y).
 
-    reach: the capsule's radius plus the ball's [m].
+    offset_radius: the capsule's radius plus the ball's [m].
     """
     back = seen_from(flight, core.back * core.ux, core.back * core.uy)
     front = seen_from(flight, core.front * core.ux, core.front * core.uy)
-    t = face_time(back, Line(core.ux, core.uy, core.front - core.back, reach), 0, slack, horizon)
-    t = min(t, circle_time(back, reach, slack, min(t, horizon)))
-    t = min(t, circle_time(front, reach, slack, min(t, horizon)))
+    t = face_time(back, Line(core.ux, core.uy, core.front - core.back, offset_radius), 0, tolerance, horizon)
+    t = min(t, circle_time(back, offset_radius, tolerance, min(t, horizon)))
+    t = min(t, circle_time(front, offset_radius, tolerance, min(t, horizon)))
     return t if t <= horizon else math.inf

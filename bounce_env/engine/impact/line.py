@@ -1,7 +1,7 @@
 """Time of impact of a flying ball with a straight wall, and with each of its two faces.
 
 Flights are relative to the wall's start, in its frame: for a part that moves uniformly the caller subtracts the part's
-position and velocity, and the same functions serve. `slack` is the length [m] below which a gap is a touch. Each
+position and velocity, and the same functions serve. `tolerance` is the length [m] below which a gap is a touch. Each
 function returns the duration [s] from now to the hit, or inf.
 """
 
@@ -20,20 +20,20 @@ class Line(NamedTuple):
     ux: float
     uy: float
     length: float
-    reach: float
+    offset_radius: float
 
 
 @function
-def line_time(flight: Flight, line: Line, facing: float, side: float, slack: float) -> float:
+def line_time(flight: Flight, line: Line, facing: float, side: float, tolerance: float) -> float:
     """Return the hit of one side of a line, taken to have no ends; arguments as for `facing_time`."""
     nx, ny = -facing * line.uy, facing * line.ux
-    gap = flight.x * nx + flight.y * ny - line.reach
+    gap = flight.x * nx + flight.y * ny - line.offset_radius
     rate = flight.vx * nx + flight.vy * ny
-    if side == 0.0 and gap >= -CORNER * slack:
+    if side == 0.0 and gap >= -CORNER * tolerance:
         # A disc that touches several surfaces is put on one of them, and may be that deep in another.
         gap = max(gap, 0.0)
-    behind = gap < -slack or (gap <= slack and side == -facing)
-    if abs(gap) <= slack:
+    behind = gap < -tolerance or (gap <= tolerance and side == -facing)
+    if abs(gap) <= tolerance:
         if abs(rate) <= ULPS_OF_SPEED * (abs(flight.vx) + abs(flight.vy)):
             rate = 0.0
         # It has just bounced there: what is left of a gap is rounding, and would count for much in the last hops.
@@ -45,19 +45,19 @@ def line_time(flight: Flight, line: Line, facing: float, side: float, slack: flo
 
 
 @function
-def is_beside(line: Line, x: float, y: float, slack: float) -> bool:
+def is_beside(line: Line, x: float, y: float, tolerance: float) -> bool:
     """Return whether a point lies beside a wall, however far: neither before its start nor beyond its end."""
     along = x * line.ux + y * line.uy
-    return -slack <= along <= line.length + slack
+    return -tolerance <= along <= line.length + tolerance
 
 
 @function
-def leaves_end(flight: Flight, line: Line, slack: float) -> bool:
+def leaves_end(flight: Flight, line: Line, tolerance: float) -> bool:
     """Return whether a ball slides off the end of a wall now: it still touches, but will be beside it when it falls."""
     slow = ULPS_OF_SPEED * (abs(flight.vx) + abs(flight.vy))
-    if not is_beside(line, flight.x, flight.y, slack):
+    if not is_beside(line, flight.x, flight.y, tolerance):
         return False
-    if abs(abs(flight.y * line.ux - flight.x * line.uy) - line.reach) > slack:
+    if abs(abs(flight.y * line.ux - flight.x * line.uy) - line.offset_radius) > tolerance:
         return False
     if abs(flight.vy * line.ux - flight.vx * line.uy) > slow:
         return False
@@ -65,7 +65,7 @@ def leaves_end(flight: Flight, line: Line, slack: float) -> bool:
     lean = flight.vx * line.ux + flight.vy * line.uy
     if abs(lean) <= slow:
         lean = _or_else(acceleration_along(flight, line.ux, line.uy), lean)
-    return (along >= line.length - slack and lean > 0.0) or (along <= slack and lean < 0.0)
+    return (along >= line.length - tolerance and lean > 0.0) or (along <= tolerance and lean < 0.0)
 
 
 @function
@@ -74,23 +74,23 @@ def _or_else(value: float | None, other: float) -> float:
 
 
 @function
-def facing_time(flight: Flight, line: Line, facing: float, side: float, slack: float, horizon: float) -> float:
+def facing_time(flight: Flight, line: Line, facing: float, side: float, tolerance: float, horizon: float) -> float:
     """Return the hit of one face of a wall, before `horizon` [s].
 
     `facing` 1.0 is the face on the left of the wall's direction, -1.0 the one on the right. `side` is the side, 1 or
     -1, on which a ball of no radius is while it touches the wall; 0 for a disc, whose centre keeps its distance.
     """
-    t = line_time(flight, line, facing, side, slack)
-    if t > horizon or t == math.inf or leaves_end(flight, line, slack):
+    t = line_time(flight, line, facing, side, tolerance)
+    if t > horizon or t == math.inf or leaves_end(flight, line, tolerance):
         return math.inf
-    # The slack closes the joint between two walls for a ball of no radius; for a disc the end's circle takes over.
+    # The tolerance closes the joint between two walls for a ball of no radius; for a disc the end's circle takes over.
     x, y = place_after(flight, t)
-    return t if is_beside(line, x, y, slack) else math.inf
+    return t if is_beside(line, x, y, tolerance) else math.inf
 
 
 @function
-def face_time(flight: Flight, line: Line, side: float, slack: float, horizon: float) -> float:
+def face_time(flight: Flight, line: Line, side: float, tolerance: float, horizon: float) -> float:
     """Return the earlier hit of the two faces of a wall; arguments as for `facing_time`."""
-    left = facing_time(flight, line, 1.0, side, slack, horizon)
-    right = facing_time(flight, line, -1.0, side, slack, horizon)
+    left = facing_time(flight, line, 1.0, side, tolerance, horizon)
+    right = facing_time(flight, line, -1.0, side, tolerance, horizon)
     return min(left, right)

@@ -15,12 +15,12 @@ Coefficients = tuple[float, float, float, float, float]  # of t^0 to t^4
 
 
 @function
-def distance_polynomial(flight: Flight, reach: float) -> Coefficients:
-    """Return |p(t)|^2 - reach^2 of a flight p(t), as a polynomial in t."""
+def distance_polynomial(flight: Flight, offset_radius: float) -> Coefficients:
+    """Return |p(t)|^2 - offset_radius^2 of a flight p(t), as a polynomial in t."""
     x, y, vx, vy, ax, ay = flight
     distance = math.sqrt(x * x + y * y)
     return (
-        (distance - reach) * (distance + reach),
+        (distance - offset_radius) * (distance + offset_radius),
         2.0 * (x * vx + y * vy),
         vx * vx + vy * vy + x * ax + y * ay,
         vx * ax + vy * ay,
@@ -74,8 +74,8 @@ def turning_point(c: Coefficients, low: float, high: float) -> float:
             start = t
         else:
             end = t
-        bend = 2.0 * c[2] + (6.0 * c[3] + 12.0 * c[4] * t) * t
-        following = t - s / bend
+        curvature = 2.0 * c[2] + (6.0 * c[3] + 12.0 * c[4] * t) * t
+        following = t - s / curvature
         if not start < following < end:
             following = 0.5 * (start + end)
         if following == t or end - start <= 1e-15 * end:

@@ -31,11 +31,14 @@ def rotating_gap(flight: Flight, ux: float, uy: float, front: float, spin: float
 
 
 @function
-def rotating_capsule_time(flight: Flight, core: Core, reach: float, spin: float, slack: float, horizon: float) -> float:
+def rotating_capsule_time(
+    flight: Flight, core: Core, offset_radius: float, spin: float, tolerance: float, horizon: float
+) -> float:
     """Return the hit of a capsule that turns at `spin` [rad/s] about the origin, up to `horizon` [s]; inf: none.
 
-    Its core runs to `core.front` along (core.ux, core.uy) now. reach: its radius plus the ball's [m]. Where the ball
-    neither comes closer nor leaves for very long the search ends before a hit, at a time up to which there is none.
+    Its core runs to `core.front` along (core.ux, core.uy) now. offset_radius: its radius plus the ball's [m].
+    Where the ball neither comes closer nor leaves for very long the search ends before a hit, at a time up to which
+    there is none.
     """
     if not horizon >= 0.0:
         return math.inf
@@ -45,17 +48,17 @@ def rotating_capsule_time(flight: Flight, core: Core, reach: float, spin: float,
     bound = pull + abs(spin) * (2.0 * (speed + pull * horizon) + abs(spin) * reached)
     t, away, front = 0.0, 0.0, core.front
     distance, rate = rotating_gap(flight, core.ux, core.uy, front, spin)
-    if distance - reach <= slack and rate > 0.0:
-        away = distance - reach  # what is left of a gap after a bounce is rounding
+    if distance - offset_radius <= tolerance and rate > 0.0:
+        away = distance - offset_radius  # what is left of a gap after a bounce is rounding
     # Along the surface no step is shorter than that in which a gap changes by what counts as touching.
-    least = math.sqrt(2.0 * slack / bound)
+    least = math.sqrt(2.0 * tolerance / bound)
     for _ in range(16 * SEARCH_STEPS):
         s, c = sin_cos(spin * t)
         now = flight_after(flight, t)
         distance, rate = rotating_gap(now, core.ux * c - core.uy * s, core.ux * s + core.uy * c, front, spin)
-        gap = distance - reach - away
-        if gap <= slack:
-            if rate < -ULPS_OF_SPEED * (abs(now.vx) + abs(now.vy) + abs(spin) * (front + reach)):
+        gap = distance - offset_radius - away
+        if gap <= tolerance:
+            if rate < -ULPS_OF_SPEED * (abs(now.vx) + abs(now.vy) + abs(spin) * (front + offset_radius)):
                 after = t + closed_after(gap, rate, bound)
                 return after if after <= horizon else math.inf
             rate, gap = max(rate, 0.0), max(gap, 0.0)

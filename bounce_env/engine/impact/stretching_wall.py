@@ -18,21 +18,21 @@ from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
 
 @function
 def segment_gap(
-    flight: Flight, dx: float, dy: float, ex: float, ey: float, facing: float, slack: float
+    flight: Flight, dx: float, dy: float, ex: float, ey: float, facing: float, tolerance: float
 ) -> tuple[float, float, float]:
     """Return the distance [m] from a wall along (dx, dy) to a flight's point, its rate of change [m/s], and the side.
 
     The flight is relative to the wall's start, and (ex, ey) is the velocity of the wall's end there. `facing` is the
     side, 1.0 or -1.0, that the ball is taken to be on while its height over the wall is no more than a few times the
-    slack; the distance from the wall's line is negative on the other one. The side returned is the one that a larger
-    height tells.
+    tolerance; the distance from the wall's line is negative on the other one. The side returned is the one that a
+    larger height tells.
     """
     length = math.sqrt(dx * dx + dy * dy)
     ux, uy = dx / length, dy / length
     along, height = flight.x * ux + flight.y * uy, flight.y * ux - flight.x * uy
-    if abs(height) > 4.0 * slack:  # a step along the surface may end a little deeper than it began
+    if abs(height) > 4.0 * tolerance:  # a step along the surface may end a little deeper than it began
         facing = 1.0 if height > 0.0 else -1.0
-    if -slack <= along <= length + slack:
+    if -tolerance <= along <= length + tolerance:
         share = along / length
         rate = (flight.vy - share * ey) * ux - (flight.vx - share * ex) * uy
         return facing * height, facing * rate, facing
@@ -57,7 +57,15 @@ def _bound(flight: Flight, pull: float, dx: float, dy: float, ex: float, ey: flo
 
 @function
 def stretching_wall_time(
-    flight: Flight, dx: float, dy: float, ex: float, ey: float, reach: float, side: int, slack: float, horizon: float
+    flight: Flight,
+    dx: float,
+    dy: float,
+    ex: float,
+    ey: float,
+    offset_radius: float,
+    side: int,
+    tolerance: float,
+    horizon: float,
 ) -> float:
     """Return the hit of a wall that runs from the origin along (dx, dy) [m] and changes by (ex, ey) [m/s], not both 0.
 
@@ -72,17 +80,17 @@ def stretching_wall_time(
     for step in range(16 * SEARCH_STEPS):
         now = flight_after(flight, t)
         rx, ry = dx + ex * t, dy + ey * t
-        distance, rate, facing = segment_gap(now, rx, ry, ex, ey, facing, slack)
-        if step == 0 and distance - reach <= slack and rate > 0.0:
-            away = distance - reach  # what is left of a gap after a bounce is rounding
-        gap = distance - reach - away
+        distance, rate, facing = segment_gap(now, rx, ry, ex, ey, facing, tolerance)
+        if step == 0 and distance - offset_radius <= tolerance and rate > 0.0:
+            away = distance - offset_radius  # what is left of a gap after a bounce is rounding
+        gap = distance - offset_radius - away
         speed = math.sqrt(now.vx * now.vx + now.vy * now.vy)
         # A bound holds over a window only: first one in which something may happen, then one not much longer than the
         # step that this allows.
         size = math.sqrt(now.x * now.x + now.y * now.y) + math.sqrt(rx * rx + ry * ry)
         window = min(horizon - t, 2.0 * size / (speed + spread + math.sqrt(pull * size)))
         bound = _bound(now, pull, rx, ry, ex, ey, window)
-        if gap <= slack:
+        if gap <= tolerance:
             if rate < -ULPS_OF_SPEED * (speed + spread):
                 after = t + closed_after(gap, rate, bound)
                 return after if after <= horizon else math.inf
@@ -93,7 +101,7 @@ def stretching_wall_time(
         t += min(open_for(gap, rate, bound), nearer)
         if rate >= 0.0:
             # Along the surface no step is shorter than that in which a gap changes by what counts as touching.
-            t = max(t, before + math.sqrt(2.0 * slack / bound))
+            t = max(t, before + math.sqrt(2.0 * tolerance / bound))
         if t > horizon or before == horizon:
             return math.inf
     return t

@@ -11,10 +11,10 @@ def is_off(state: State, w: int, element: int) -> bool:
     return state.disabled[w, element] != 0
 
 
-@where("gates", otherwise=False)
+@where("one_way", otherwise=False)
 def is_one_way(state: State, scene: int, i: int) -> bool:
     """Return whether face `i` is that of a one-way wall, which is struck from the left only."""
-    return state.gates[scene, i] != 0
+    return state.one_way[scene, i] != 0
 
 
 @where("turns", otherwise=0)

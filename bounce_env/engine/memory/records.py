@@ -17,7 +17,7 @@ def record(**fields: str) -> np.dtype[Any]:
 
 SCENE = record(
     # How many rows of each table this scene uses.
-    elements="i8", faces="i8", circles="i8", arcs="i8", sensors="i8", rings="i8", fields="i8", parts="i8",
+    elements="i8", faces="i8", circles="i8", arcs="i8", sensors="i8", circle_sensors="i8", fields="i8", parts="i8",
     extent="f8",  # [m] the largest coordinate of the scene plus the ball's radius: the scale of round-off
     max_speed="f8",  # [m/s] inf where the scene has no cap
     rest_speed="f8",  # [m/s]
@@ -28,26 +28,26 @@ ELEMENT = record(
     kick="f8", kick_threshold="f8",  # [m/s]
     cooldown="f8",  # [s]
 )  # fmt: skip
-FACE = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", reach="f8", element="i8")
-CIRCLE = record(x="f8", y="f8", reach="f8", element="i8")
+FACE = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", offset_radius="f8", element="i8")
+CIRCLE = record(x="f8", y="f8", offset_radius="f8", element="i8")
 ARC = record(
     x="f8", y="f8", outer="f8", inner="f8",  # [m] distances from the centre at which it is struck; inner 0: never
     sx="f8", sy="f8", ex="f8", ey="f8", span="i8",  # unit vectors to start and end; CLOSED, MINOR or MAJOR
     element="i8",
 )  # fmt: skip
 SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", drain="i8", element="i8")
-RING = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
-EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
+CIRCLE_SENSOR = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
+FIELD_EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
 PART = record(  # what moves: a capsule that slides along its core or turns about (x, y), or a dragged wall
     x="f8", y="f8", ux="f8", uy="f8",  # [m] where it is at offset 0; unit vector along its core
     back="f8", front="f8",  # [m] where the core begins and ends along that vector
-    radius="f8", reach="f8",  # [m] about the core; the same plus the ball's
+    radius="f8", offset_radius="f8",  # [m] about the core; the same plus the ball's
     span="f8", start="f8",  # [m or rad] from stop to stop, 0 of a dragged wall; offset after a reset
     up_speed="f8", down_speed="f8",  # [m/s or rad/s] the fastest either way
     shuttle="f8",  # [m/s] of a part that turns back at its stops: the speed at which it sets off; otherwise 0
     element="i8",
 )  # fmt: skip
-GUIDE = record(  # of a dragged wall
+DRAG_LIMITS = record(  # of a dragged wall
     sx="f8", sy="f8", ex="f8", ey="f8",  # [m] where its start and its end are after a reset
     x0="f8", y0="f8", x1="f8", y1="f8",  # [m] the box in which they stay
     shortest="f8",  # [m] the length at which both stop
@@ -77,7 +77,7 @@ BALL = record(
     settling="i8",  # SETTLES while the last bounces before a contact are summed, JAMMED between other balls, or 0
     nx="f8", ny="f8",  # normal of that contact, to the ball
     rolling="i8",  # the element with a curve that it was last set rolling on, otherwise -1
-    slack="f8",  # [m] what counts as touching at that instant
+    tolerance="f8",  # [m] what counts as touching at that instant
     vague="f8",  # [m/s] by how much another ball's push may miss its direction at that instant
     touched="i8",  # how many surfaces it touched when it was last resolved
     confined="i8",  # how often it has bounced since it last flew any way to speak of, see BOUNCES_WITHOUT_ROOM
@@ -93,7 +93,7 @@ BALL = record(
 TOUCH = record(
     nx="f8", ny="f8", ux="f8", uy="f8",  # unit normal to the ball, velocity of the surface [m/s]
     gap="f8",  # [m] to it: next to nothing, but for rounding
-    bend="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
+    curvature="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
     along="f8", length="f8",  # [m] of a straight one: where on it the ball is, with the normal on its left
     least="f8",  # [m/s] the smallest rebound from a part, where there is one
     moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
@@ -153,7 +153,7 @@ BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = map(int, Eve
 ON_FACE, ON_CIRCLE, ON_ARC, OFF_END, RESOLVE, OFF_PART = 0, 1, 2, 3, 4, 5
 
 # Kinds of sensors.
-LINE, RING_ENTRY, FIELD_EDGE = 0, 1, 2
+LINE_SENSOR, CIRCLE_ENTRY, FIELD_BORDER = 0, 1, 2
 
 # Spans of arcs: 2 pi, up to pi, more.
 CLOSED, MINOR, MAJOR = 0, 1, 2

@@ -32,15 +32,15 @@ class State(NamedTuple):
     elements: Array
     gravity: Table  # (scenes, 2) m/s^2; there as well where a scene has a field
     faces: Table
-    gates: Table  # (scenes, faces) int8: 1 for a one-way wall
+    one_way: Table  # (scenes, faces) int8: 1 for a one-way wall
     circles: Table
     arcs: Table
     sensors: Table
-    rings: Table
-    edges: Table  # of fields
+    circle_sensors: Table
+    field_edges: Table  # of fields
     parts: Table
     turns: Table  # (scenes, parts) int8: 1 or -1, which way a part turns; 0 slides
-    guides: Table  # (scenes, parts) GUIDE; None: no scene has a wall that is dragged
+    drag_limits: Table  # (scenes, parts) DRAG_LIMITS; None: no scene has a wall that is dragged
     drags: Table  # (scenes,) factor on the velocity at each instant of a command
     # The worlds: first axis worlds.
     worlds: Array
@@ -52,8 +52,8 @@ class State(NamedTuple):
     arc_sides: Table  # (worlds, balls, arcs) int8; only for a ball of no radius
     part_sides: Table  # (worlds, balls, parts) int8; only for a ball of no radius, where walls are dragged
     sensor_sides: Table  # (worlds, balls, sensors) int8
-    ring_sides: Table  # (worlds, balls, rings) int8: 1 outside, -1 inside
-    edge_sides: Table  # (worlds, balls, edges) int8: 1 on the field's side
+    circle_sensor_sides: Table  # (worlds, balls, rings) int8: 1 outside, -1 inside
+    field_edge_sides: Table  # (worlds, balls, edges) int8: 1 on the field's side
     pairs: Table  # (worlds, balls, balls) PAIR, by the later and the earlier ball; None for one ball, and points
     touches: Array  # (worlds, TOUCHES) TOUCH: what a ball touches at the instant that is resolved
     disabled: Table  # (worlds, elements) int8; None where nothing can be switched off
@@ -81,7 +81,7 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
 
     point: whether the balls have no radius. switches: whether elements can be disabled.
     """
-    parts, guides, elements = tables["parts"], tables["guides"], tables["elements"]
+    parts, drag_limits, elements = tables["parts"], tables["drag_limits"], tables["elements"]
 
     def sides(table: Table) -> Array | None:
         return None if table is None else np.zeros((worlds, balls, table.shape[1]), np.int8)
@@ -91,14 +91,14 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
         worlds=np.zeros(worlds, WORLD),
         balls=np.zeros((worlds, balls), BALL),
         motions=None if parts is None else np.zeros((worlds, parts.shape[1]), MOTION),
-        ends=None if guides is None else np.zeros((worlds, guides.shape[1]), ENDS),
+        ends=None if drag_limits is None else np.zeros((worlds, drag_limits.shape[1]), ENDS),
         zones=None if parts is None else np.zeros((worlds, balls, parts.shape[1]), ZONE),
         face_sides=sides(tables["faces"]) if point else None,
         arc_sides=sides(tables["arcs"]) if point else None,
-        part_sides=sides(guides) if point else None,
+        part_sides=sides(drag_limits) if point else None,
         sensor_sides=sides(tables["sensors"]),
-        ring_sides=sides(tables["rings"]),
-        edge_sides=sides(tables["edges"]),
+        circle_sensor_sides=sides(tables["circle_sensors"]),
+        field_edge_sides=sides(tables["field_edges"]),
         pairs=None if point or balls == 1 else np.zeros((worlds, balls, balls), PAIR),
         touches=np.zeros((worlds, TOUCHES), TOUCH),
         disabled=np.zeros((worlds, elements.shape[1]), np.int8) if switches else None,

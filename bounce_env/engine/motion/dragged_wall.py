@@ -11,7 +11,7 @@ from bounce_env.engine.motion.instant import since
 from bounce_env.engine.tolerances import ULPS_OF_LENGTH, ULPS_OF_SPEED
 
 # Longer than anything lasts [s]: a sum with it is still a number.
-NEVER = 1e300
+NO_STOP = 1e300
 
 
 @function
@@ -40,7 +40,7 @@ def height_over(ends: Record, t: float, x: float, y: float, vx: float, vy: float
 @function
 def _room(place: float, velocity: float, low: float, high: float) -> float:
     """How long [s] a coordinate moves on before it comes to a border."""
-    return NEVER if velocity == 0.0 else min((_border(velocity, low, high) - place) / velocity, NEVER)
+    return NO_STOP if velocity == 0.0 else min((_border(velocity, low, high) - place) / velocity, NO_STOP)
 
 
 @function
@@ -54,18 +54,18 @@ def _narrowing(ends: Record, shortest: float) -> float:
     dx, dy, ex, ey = ends.x1 - ends.x0, ends.y1 - ends.y0, ends.vx1 - ends.vx0, ends.vy1 - ends.vy0
     closing, square = -(dx * ex + dy * ey), dx * dx + dy * dy - shortest * shortest
     if closing <= ULPS_OF_SPEED * (abs(dx * ex) + abs(dy * ey)):
-        return NEVER
+        return NO_STOP
     if square <= ULPS_OF_LENGTH * shortest * shortest:
         return 0.0
     root = closing * closing - (ex * ex + ey * ey) * square
-    return NEVER if root < 0.0 else min(square / (closing + math.sqrt(root)), NEVER)
+    return NO_STOP if root < 0.0 else min(square / (closing + math.sqrt(root)), NO_STOP)
 
 
 @function
-def _to_next_stop(ends: Record, guide: Record) -> float:
-    xs = min(_room(ends.x0, ends.vx0, guide.x0, guide.x1), _room(ends.x1, ends.vx1, guide.x0, guide.x1))
-    ys = min(_room(ends.y0, ends.vy0, guide.y0, guide.y1), _room(ends.y1, ends.vy1, guide.y0, guide.y1))
-    return min(xs, ys, _narrowing(ends, guide.shortest))
+def _to_next_stop(ends: Record, limits: Record) -> float:
+    xs = min(_room(ends.x0, ends.vx0, limits.x0, limits.x1), _room(ends.x1, ends.vx1, limits.x0, limits.x1))
+    ys = min(_room(ends.y0, ends.vy0, limits.y0, limits.y1), _room(ends.y1, ends.vy1, limits.y0, limits.y1))
+    return min(xs, ys, _narrowing(ends, limits.shortest))
 
 
 @function
@@ -75,36 +75,36 @@ def _allowed(place: float, velocity: float, low: float, high: float) -> float:
 
 
 @function
-def move_ends(motion: Record, ends: Record, guide: Record, hi: float, lo: float) -> None:
+def move_ends(motion: Record, ends: Record, limits: Record, hi: float, lo: float) -> None:
     """Bring the ends to an instant of their motion; one that has come to a border is on it."""
     t = since(hi, lo, motion.hi, motion.lo)
     ends.x0, ends.y0 = ends.x0 + ends.vx0 * t, ends.y0 + ends.vy0 * t
     ends.x1, ends.y1 = ends.x1 + ends.vx1 * t, ends.y1 + ends.vy1 * t
-    ends.x0, ends.x1 = min(max(ends.x0, guide.x0), guide.x1), min(max(ends.x1, guide.x0), guide.x1)
-    ends.y0, ends.y1 = min(max(ends.y0, guide.y0), guide.y1), min(max(ends.y1, guide.y0), guide.y1)
+    ends.x0, ends.x1 = min(max(ends.x0, limits.x0), limits.x1), min(max(ends.x1, limits.x0), limits.x1)
+    ends.y0, ends.y1 = min(max(ends.y0, limits.y0), limits.y1), min(max(ends.y1, limits.y0), limits.y1)
     motion.hi, motion.lo = hi, lo
 
 
 @function
-def stop_at_borders(motion: Record, ends: Record, guide: Record) -> None:
+def stop_at_borders(motion: Record, ends: Record, limits: Record) -> None:
     """Let what is held by a border stop, and both ends where they are as near to each other as they may come.
 
     Then set how long the wall moves on.
     """
     ends.vx0, ends.vx1 = (
-        _allowed(ends.x0, ends.vx0, guide.x0, guide.x1),
-        _allowed(ends.x1, ends.vx1, guide.x0, guide.x1),
+        _allowed(ends.x0, ends.vx0, limits.x0, limits.x1),
+        _allowed(ends.x1, ends.vx1, limits.x0, limits.x1),
     )
     ends.vy0, ends.vy1 = (
-        _allowed(ends.y0, ends.vy0, guide.y0, guide.y1),
-        _allowed(ends.y1, ends.vy1, guide.y0, guide.y1),
+        _allowed(ends.y0, ends.vy0, limits.y0, limits.y1),
+        _allowed(ends.y1, ends.vy1, limits.y0, limits.y1),
     )
-    if _narrowing(ends, guide.shortest) == 0.0:
+    if _narrowing(ends, limits.shortest) == 0.0:
         stop_ends(motion, ends)
         return
     moves = ends.vx0 != 0.0 or ends.vy0 != 0.0 or ends.vx1 != 0.0 or ends.vy1 != 0.0
     motion.velocity = 1.0 if moves else 0.0
-    motion.offset = -_to_next_stop(ends, guide)
+    motion.offset = -_to_next_stop(ends, limits)
 
 
 @function
@@ -115,29 +115,29 @@ def stop_ends(motion: Record, ends: Record) -> None:
 
 
 @function
-def set_ends_off(motion: Record, ends: Record, guide: Record, hi: float, lo: float) -> None:
+def set_ends_off(motion: Record, ends: Record, limits: Record, hi: float, lo: float) -> None:
     """Let the ends move, from the instant (hi, lo) on, as they were last commanded to."""
-    move_ends(motion, ends, guide, hi, lo)
+    move_ends(motion, ends, limits, hi, lo)
     ends.vx0, ends.vy0, ends.vx1, ends.vy1 = ends.cx0, ends.cy0, ends.cx1, ends.cy1
-    stop_at_borders(motion, ends, guide)
+    stop_at_borders(motion, ends, limits)
 
 
 @function
-def next_stop_of_ends(motion: Record, ends: Record, guide: Record, hi: float, lo: float) -> None:
+def next_stop_of_ends(motion: Record, ends: Record, limits: Record, hi: float, lo: float) -> None:
     """Let one or both ends stop at the instant (hi, lo) of their next stop."""
     duration = -motion.offset
-    for_x0 = _room(ends.x0, ends.vx0, guide.x0, guide.x1) <= duration
-    for_y0 = _room(ends.y0, ends.vy0, guide.y0, guide.y1) <= duration
-    for_x1 = _room(ends.x1, ends.vx1, guide.x0, guide.x1) <= duration
-    for_y1 = _room(ends.y1, ends.vy1, guide.y0, guide.y1) <= duration
-    narrow = _narrowing(ends, guide.shortest) <= duration
-    move_ends(motion, ends, guide, hi, lo)
+    for_x0 = _room(ends.x0, ends.vx0, limits.x0, limits.x1) <= duration
+    for_y0 = _room(ends.y0, ends.vy0, limits.y0, limits.y1) <= duration
+    for_x1 = _room(ends.x1, ends.vx1, limits.x0, limits.x1) <= duration
+    for_y1 = _room(ends.y1, ends.vy1, limits.y0, limits.y1) <= duration
+    narrow = _narrowing(ends, limits.shortest) <= duration
+    move_ends(motion, ends, limits, hi, lo)
     if narrow:
         stop_ends(motion, ends)
         return
     # On the border to the bit, whatever the rounding of the way there.
-    ends.x0 = _border(ends.vx0, guide.x0, guide.x1) if for_x0 else ends.x0
-    ends.y0 = _border(ends.vy0, guide.y0, guide.y1) if for_y0 else ends.y0
-    ends.x1 = _border(ends.vx1, guide.x0, guide.x1) if for_x1 else ends.x1
-    ends.y1 = _border(ends.vy1, guide.y0, guide.y1) if for_y1 else ends.y1
-    stop_at_borders(motion, ends, guide)
+    ends.x0 = _border(ends.vx0, limits.x0, limits.x1) if for_x0 else ends.x0
+    ends.y0 = _border(ends.vy0, limits.y0, limits.y1) if for_y0 else ends.y0
+    ends.x1 = _border(ends.vx1, limits.x0, limits.x1) if for_x1 else ends.x1
+    ends.y1 = _border(ends.vy1, limits.y0, limits.y1) if for_y1 else ends.y1
+    stop_at_borders(motion, ends, limits)

@@ -18,13 +18,13 @@ def gravity_of(state: State, scene: int) -> tuple[float, float]:
     return state.gravity[scene, 0], state.gravity[scene, 1]
 
 
-@where("edges")
+@where("field_edges")
 def _add_fields(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     inside = True
     for i in range(state.scenes[scene].fields):
-        edge = state.edges[scene, i]
-        inside = inside and state.edge_sides[w, k, i] > 0
+        edge = state.field_edges[scene, i]
+        inside = inside and state.field_edge_sides[w, k, i] > 0
         if edge.last:
             if inside:
                 ball.gx += edge.ax

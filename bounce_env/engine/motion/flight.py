@@ -157,9 +157,9 @@ def fly(ball: Record, flight: Flight, t: float, hi: float, lo: float) -> None:
 
 
 @function
-def slow_on_circle(flight: Flight, reach: float, slack: float) -> float:
+def slow_on_circle(flight: Flight, offset_radius: float, tolerance: float) -> float:
     """Return the speed [m/s] below which closing on a circle is no hit: the rounding of velocity and normal."""
-    return (ULPS_OF_SPEED + slack / reach) * (abs(flight.vx) + abs(flight.vy))
+    return (ULPS_OF_SPEED + tolerance / offset_radius) * (abs(flight.vx) + abs(flight.vy))
 
 
 @function

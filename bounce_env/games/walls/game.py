@@ -72,5 +72,5 @@ class WallsGame(Game):
 
     def written(self, state: State, rules: Rules) -> tuple[Array, ...]:
         """Where the target is."""
-        assert state.rings is not None
-        return (state.rings,)
+        assert state.circle_sensors is not None
+        return (state.circle_sensors,)

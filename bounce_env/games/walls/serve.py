@@ -72,15 +72,15 @@ def draw_target(rules: Rules, game: GameState, w: int, attempt: int, x: float, y
     return (tx - x) * (tx - x) + (ty - y) * (ty - y) > clear * clear
 
 
-@where("rings", otherwise=(0.0, 0.0, 0.0))
+@where("circle_sensors", otherwise=(0.0, 0.0, 0.0))
 def target_of(state: State, w: int, ring: int) -> tuple[float, float, float]:
     """Centre and radius of the target: x, y, radius [m]."""
-    target = state.rings[state.worlds[w].scene, ring]
+    target = state.circle_sensors[state.worlds[w].scene, ring]
     return target.x, target.y, target.radius
 
 
-@where("rings")
+@where("circle_sensors")
 def move_target(state: State, w: int, ring: int, x: float, y: float) -> None:
     """Put the target somewhere else; a ball is to be placed after this."""
-    target = state.rings[state.worlds[w].scene, ring]
+    target = state.circle_sensors[state.worlds[w].scene, ring]
     target.x, target.y = x, y

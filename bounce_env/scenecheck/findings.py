@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from bounce_env.engine.placement import describe
 from bounce_env.scene import Scene, Sensor
-from bounce_env.survey.crossings import crossings
-from bounce_env.survey.follow import CRUSHES, DRAINED, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
-from bounce_env.survey.places import Cluster, clusters
-from bounce_env.survey.reach import reach_boxes, scores
-from bounce_env.survey.run import Survey, place_size
+from bounce_env.scenecheck.crossings import crossings
+from bounce_env.scenecheck.follow import CRUSHES, DRAINED, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
+from bounce_env.scenecheck.places import Cluster, clusters
+from bounce_env.scenecheck.reach import reach_boxes, scores
+from bounce_env.scenecheck.run import Survey, place_size
 
 KINDS = ("problem", "warning", "note")
 

@@ -7,7 +7,7 @@ import pytest
 from conftest import soak_count
 
 from bounce_env import Arc, Bumper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
-from bounce_env.survey.crossings import crossings
+from bounce_env.scenecheck.crossings import crossings
 
 
 def pairs(*elements):

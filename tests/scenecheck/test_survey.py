@@ -8,10 +8,10 @@ from tables import CUP, POCKET, SOUND, WALLED_IN
 
 from bounce_env import World
 from bounce_env.scene import Scene, Wall, load_scene
-from bounce_env.survey import Finding, Survey, findings, survey
-from bounce_env.survey.follow import CRUSHES, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
-from bounce_env.survey.reach import reach_boxes
-from bounce_env.survey.run import ENDLESS_AT
+from bounce_env.scenecheck import Finding, Survey, findings, survey
+from bounce_env.scenecheck.follow import CRUSHES, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
+from bounce_env.scenecheck.reach import reach_boxes
+from bounce_env.scenecheck.run import ENDLESS_AT
 
 BALLS = 2000
 

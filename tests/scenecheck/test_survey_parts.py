@@ -8,10 +8,10 @@ from tables import CUP, SOUND, box, table
 
 from bounce_env.engine.placement import cores_at_start, gaps
 from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, load_scene
-from bounce_env.survey.inside import inside_of
-from bounce_env.survey.places import clusters
-from bounce_env.survey.reach import reach_boxes, scores, with_borders
-from bounce_env.survey.starts import NoRoomError, fastest, random_starts
+from bounce_env.scenecheck.inside import inside_of
+from bounce_env.scenecheck.places import clusters
+from bounce_env.scenecheck.reach import reach_boxes, scores, with_borders
+from bounce_env.scenecheck.starts import NoRoomError, fastest, random_starts
 
 
 @pytest.mark.parametrize(

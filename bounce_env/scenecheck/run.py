@@ -12,10 +12,10 @@ from bounce_env.engine.packing import pack
 from bounce_env.games.episode import FPS
 from bounce_env.games.timing import MAX_EVENTS
 from bounce_env.scene import Bumper, Scene
-from bounce_env.survey.follow import FATE, Fates, Watch, follow_balls
-from bounce_env.survey.inside import inside_of
-from bounce_env.survey.reach import reach_boxes, scores, with_borders
-from bounce_env.survey.starts import random_starts
+from bounce_env.scenecheck.follow import FATE, Fates, Watch, follow_balls
+from bounce_env.scenecheck.inside import inside_of
+from bounce_env.scenecheck.reach import reach_boxes, scores, with_borders
+from bounce_env.scenecheck.starts import random_starts
 
 BALLS_AT_ONCE = 500
 """How many balls are followed between two reports of progress."""

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from bounce_env.engine.placement import cores_at_start, gaps
 from bounce_env.scene import Scene
-from bounce_env.survey.inside import Inside
+from bounce_env.scenecheck.inside import Inside
 
 Floats = npt.NDArray[np.float64]
 

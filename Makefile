@@ -3,9 +3,6 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
-FAST := tests/scene tests/render tests/scenecheck/test_crossings.py tests/test_wording.py tests/test_extras.py \
-	tests/engine/test_impact.py tests/engine/test_law.py tests/reference/test_tutorial.py
-
 .PHONY: train test check results soak dist lint clean
 
 train: $(VENV)/train
@@ -17,7 +14,7 @@ results: $(VENV)/train
 
 # For every edit: under two minutes, nothing is compiled.
 check: lint
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n 2 --dist loadfile $(FAST)
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n 2 --dist loadfile -m fast
 
 test: lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile

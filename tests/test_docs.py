@@ -1,8 +1,12 @@
 """What the documents say is so: the table of info keys, the version, and the files that they name."""
 
+import ast
+import io
 import re
+import tokenize
 import tomllib
 from pathlib import Path
+from tokenize import COMMENT
 
 import gymnasium as gym
 import pytest
@@ -66,15 +70,70 @@ def test_readme_has_every_extra_that_users_need():
             assert f"| `{extra}` |" in readme
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/info.md", "docs/releasing.md", "SECURITY.md"])
+DOCUMENTS = [
+    "README.md", "CONTRIBUTING.md", "SECURITY.md", "docs/architecture.md", "docs/glossary.md", "docs/info.md",
+    "docs/physics.md", "docs/releasing.md",
+]  # fmt: skip
+SOURCES = sorted(path for folder in ("bounce_env", "agents", "tests", ".ci") for path in (ROOT / folder).rglob("*.py"))
+FILE = re.compile(r"[\w][\w./-]*\.(?:md|toml|py|txt|json|yml|cff|png|gif)\b")
+
+
+def texts_of(path: Path) -> tuple[list[str], list[str]]:
+    """The docstrings and comments of a module, and its other strings."""
+    source = path.read_text()
+    told = [token.string for token in tokenize.generate_tokens(io.StringIO(source).readline) if token.type == COMMENT]
+    strings = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            told.append(node.value.value)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            strings.append(node.value)
+    return told, [text for text in strings if text not in told]
+
+
+def is_there(name: str, path: Path) -> bool:
+    """Whether a cited file is in the repository, seen from its root, the package, the engine, or the module."""
+    places = (ROOT, ROOT / "bounce_env", ROOT / "bounce_env" / "engine", path.parent)
+    return any((place / name).is_file() for place in places)
+
+
+def test_docstrings_and_comments_cite_files_that_are_there():
+    """Or that the code of the same folder reads or writes itself; NAME is a placeholder."""
+    texts = {path: texts_of(path) for path in SOURCES}
+    missing, found = [], 0
+    for path, (told, _) in texts.items():
+        top = path.relative_to(ROOT).parts[0]
+        own = [
+            text for other, (_, strings) in texts.items() if other.relative_to(ROOT).parts[0] == top for text in strings
+        ]
+        for name in {name for text in told for name in FILE.findall(text)}:
+            if "NAME" in name or ("/" not in name and any(name in text for text in own)):
+                continue
+            found += 1
+            if not is_there(name, path):
+                missing.append(f"{path.relative_to(ROOT)}: {name}")
+    assert missing == []
+    assert found > 20
+
+
+def test_a_file_that_is_not_there_is_noticed(tmp_path):
+    module = tmp_path / "module.py"
+    module.write_text('"""As in docs/nowhere.md."""\nX = 1  # lost.py\nPATH = "own.json"  # own.json is written\n')
+    told, strings = texts_of(module)
+    assert {name for text in told for name in FILE.findall(text)} == {"docs/nowhere.md", "lost.py", "own.json"}
+    assert "own.json" in strings
+    assert not is_there("docs/nowhere.md", module)
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
 def test_files_that_are_linked_or_named_are_there(document):
     text = (ROOT / document).read_text()
     named = re.findall(r"\]\(((?!http)[^)#]+)\)", text) + re.findall(
-        r"`((?:tests|docs|configs|bounce_env|\.github)/[\w./-]+)`", text
+        r"`((?:tests|docs|configs|bounce_env|\.github)/[\w./-]+\.\w+)`", text
     )
     assert document != "README.md" or len(named) > 3
     for path in named:
-        assert (ROOT / path).exists(), path
+        assert "NAME" in path or (ROOT / path).exists() or (ROOT / document).with_name(path).exists(), path
 
 
 @pytest.mark.parametrize("workflow", sorted((ROOT / ".github" / "workflows").glob("*.yml")), ids=lambda path: path.name)

@@ -10,13 +10,15 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-from conftest import require
 from gymnasium.error import DependencyNotInstalled
 
 import bounce_env
 from bounce_env import extras
 from bounce_env.commands import main
 from bounce_env.extras import MissingExtraError, install_command, missing, source_folder, version
+from tests.conftest import require
+
+pytestmark = pytest.mark.fast
 
 ROOT = Path(bounce_env.__file__).parent.parent
 

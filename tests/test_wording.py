@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from bounce_env.wording import at_least, at_most, nearest, numbers, real, shown, unknown_name, whole
 
+pytestmark = pytest.mark.fast
+
 NO_NUMBERS = ["1", b"1", None, True, np.True_, 1j, [1], np.array([1.0]), decimal.Decimal(1), np.timedelta64(1, "s"), {}]
 
 

@@ -35,7 +35,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     """The scene of a TOML file, or a built-in scene.
 
     source: the path of a .toml file; or, as text without path separator and without .toml, the name of one of
-    `builtin_scenes()`. The built-in paddle.toml describes the format.
+    `builtin_scenes()`. scene/builtin/paddle.toml describes the format.
 
     Raises SceneError if there is no such scene, if the file cannot be read or is not TOML (naming the line),
     and for all that is wrong in it, one line each: file, element, field, value and what is allowed.

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import soak_count
 
 from agents.baselines import BASELINES
 from agents.command import Refused
@@ -13,6 +12,7 @@ from agents.paddle_players import Mover, Table, landing
 from agents.results import estimate
 from agents.task import Task
 from bounce_env import Ball, Bumper, Paddle, Scene, Sensor, Wall, World, load_scene
+from tests.conftest import soak_count
 
 TASK = Task("Bounce/Paddle-v0")
 PLAYERS = BASELINES[TASK.env_id]

@@ -13,6 +13,8 @@ from agents.evaluate import EvaluateOptions, evaluate
 from agents.record import RecordOptions, record
 from agents.train import TrainOptions, train
 
+pytestmark = pytest.mark.train
+
 ROOT = Path(__file__).parents[2]
 COMMANDS = {"train": (train, TrainOptions), "evaluate": (evaluate, EvaluateOptions), "record": (record, RecordOptions)}
 

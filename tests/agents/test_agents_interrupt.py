@@ -8,12 +8,14 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import soak_count
 from stable_baselines3 import PPO
 
 from agents.curve import Curve
 from agents.runs import open_run
 from agents.train import TrainOptions, train
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.train
 
 ROOT = Path(__file__).parents[2]
 CONFIG = """\

@@ -14,6 +14,8 @@ from agents.command import Refused
 from agents.intervals import bootstrap
 from agents.study import UNSEEN, Study, StudyOptions, train_one, trainings_of
 
+pytestmark = [pytest.mark.slow, pytest.mark.train]
+
 TINY = """\
 Bounce/Paddle-v0:
   n_timesteps: 2048

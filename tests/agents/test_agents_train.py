@@ -32,6 +32,8 @@ from agents.runs import open_run, versions
 from agents.task import HELD_OUT, Task, training_seed
 from agents.train import TrainOptions, train
 
+pytestmark = pytest.mark.train
+
 ENV_ID = "Bounce/Paddle-v0"
 TINY = """\
 Bounce/Paddle-v0:

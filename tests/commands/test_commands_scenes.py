@@ -6,12 +6,12 @@ from pathlib import Path
 
 import gymnasium as gym
 import pytest
-from conftest import SOAK
 
 import bounce_env.commands
 from bounce_env.commands import main
 from bounce_env.extras import install_command
 from bounce_env.scene import builtin_scenes, load_scene
+from tests.conftest import SOAK
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "configs" / "scenes").glob("*.toml"))

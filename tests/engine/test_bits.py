@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from closed_scenes import closed_scene
-from conftest import soak_count
 
 from bounce_env import Ball, Bumper, Paddle, Scene, Sensor, Wall, World, load_scene
 from bounce_env.engine.world_batch import WorldBatch
 from bounce_env.scene import Element
+from tests.conftest import soak_count
+from tests.engine.closed_scenes import closed_scene
 
 PIECES = 256
 SECONDS = 4.0

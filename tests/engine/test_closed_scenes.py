@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
-from closed_scenes import closed_scene
-from conftest import soak_count
 
 from bounce_env.engine.memory.records import OK
 from bounce_env.engine.world_batch import WorldBatch
+from tests.conftest import soak_count
+from tests.engine.closed_scenes import closed_scene
+
+pytestmark = pytest.mark.slow
 
 BALLS_PER_SCENE = soak_count(100, 1000)
 SECONDS = 10.0

@@ -5,7 +5,6 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from conftest import soak_count
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -14,6 +13,9 @@ from bounce_env.engine.impact import arc, capsule, circle, line
 from bounce_env.engine.motion import roots
 from bounce_env.engine.motion.flight import Flight
 from bounce_env.engine.motion.parts import Core
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.fast
 
 capsule_time, circle_time, face_time = map(from_python, (capsule.capsule_time, circle.circle_time, line.face_time))
 falling_time, straight_circle_time = map(from_python, (roots.falling_time, circle.straight_circle_time))

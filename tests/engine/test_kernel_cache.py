@@ -10,6 +10,8 @@ import pytest
 
 import bounce_env
 
+pytestmark = pytest.mark.slow
+
 PACKAGE = Path(bounce_env.__file__).parent
 RUN = """
 from bounce_env import Scene, Wall, World

@@ -8,10 +8,13 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import bounce_env
 from bounce_env import Ball, Bumper, Scene, Wall, World
 from bounce_env.engine import world_kernels
+
+pytestmark = pytest.mark.slow
 
 PACKAGE = Path(bounce_env.__file__).parent
 RUN = """

@@ -2,12 +2,15 @@
 
 import math
 
-from conftest import soak_count
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.contact import restitution
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.fast
 
 bounce, capped = from_python(restitution.bounce), from_python(restitution.capped)
 

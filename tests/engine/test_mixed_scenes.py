@@ -5,13 +5,15 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from mixed_scenes import mixed_scene, start_in
 
 from bounce_env import Field, Scene
 from bounce_env.engine.memory.records import BUDGET, OK
 from bounce_env.engine.placement import gaps
 from bounce_env.engine.world_batch import WorldBatch
+from tests.conftest import soak_count
+from tests.engine.mixed_scenes import mixed_scene, start_in
+
+pytestmark = pytest.mark.slow
 
 SECONDS = 20.0
 EVENTS = 400_000

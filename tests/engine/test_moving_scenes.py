@@ -3,14 +3,17 @@
 from collections import Counter
 
 import numpy as np
-from conftest import soak_count
-from moving_scenes import MAX_SPEED, command_at_random, moving_scene, start
-from stability_case import new_world
+import pytest
 
 from bounce_env import Scene, Wall
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, OK
 from bounce_env.engine.placement import gaps
 from bounce_env.engine.world import World
+from tests.conftest import soak_count
+from tests.engine.moving_scenes import MAX_SPEED, command_at_random, moving_scene, start
+from tests.stability.stability_case import new_world
+
+pytestmark = pytest.mark.slow
 
 SECONDS = 20.0
 EVENTS = 20_000  # in one call

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from stability_case import new_world
 
 from bounce_env import Ball, Bumper, Scene, Wall
 from bounce_env.engine.memory.records import CRUSHED, OK
 from bounce_env.engine.world import World
+from tests.stability.stability_case import new_world
 
 R, CAP = 0.125, 50.0
 

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import mpmath
 import numpy as np
-from conftest import soak_count
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -13,6 +13,9 @@ from bounce_env.engine.motion import instant
 from bounce_env.engine.motion import sincos as trig
 from bounce_env.games import streams
 from bounce_env.games.streams import EPISODES, LAUNCHES
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.fast
 
 before, later, since = map(from_python, (instant.before, instant.later, instant.since))
 sin_cos, bits, uniform = map(from_python, (trig.sin_cos, streams.bits, streams.uniform))

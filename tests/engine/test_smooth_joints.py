@@ -8,10 +8,10 @@ import random
 
 import numpy as np
 import pytest
-from conftest import soak_count
 
 from bounce_env.engine.world import World
 from bounce_env.scene import Arc, Ball, Scene, Wall
+from tests.conftest import soak_count
 
 HALF_WIDTH, HALF_HEIGHT, CORNER = 1.0, 0.75, 0.375
 

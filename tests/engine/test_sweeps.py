@@ -8,12 +8,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from conftest import soak_count
 
 from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.impact import capsule, rotating_capsule, stretching_wall
 from bounce_env.engine.motion.flight import Flight
 from bounce_env.engine.motion.parts import Core
+from tests.conftest import soak_count
 
 rotating_capsule_time = from_python(rotating_capsule.rotating_capsule_time)
 capsule_time = from_python(capsule.capsule_time)

@@ -11,10 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from stability_case import new_world
 
 from bounce_env import Ball, Flipper, Paddle, Scene, Wall
+from tests.conftest import soak_count
+from tests.stability.stability_case import new_world
+
+pytestmark = pytest.mark.slow
 
 SAMPLES = 500  # between two hits
 HITS = 4  # of one sweep that are looked at

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from stability_case import new_world
 
 from bounce_env import Arc, Ball, Bumper, Paddle, Scene, Sensor, Wall, World
 from bounce_env.engine.memory.records import CROSSING
+from tests.stability.stability_case import new_world
 
 ROOM = Scene(
     gravity=(0.0, -1.0),

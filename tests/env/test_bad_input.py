@@ -3,9 +3,9 @@
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import PADDLE, assert_same, make_vec
 
 from bounce_env.envs.paddle import PaddleEnv, PaddleVectorEnv
+from tests.env.rollouts import PADDLE, assert_same, make_vec
 
 NAN, INF = float("nan"), float("inf")
 PYDANTICS = ["validation error", "input_value", "type=", "pydantic"]

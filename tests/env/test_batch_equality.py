@@ -5,12 +5,12 @@ import copy
 import gymnasium as gym
 import numpy as np
 import pytest
-from conftest import soak_count
 from gymnasium.vector import AutoresetMode
-from rollouts import MODES, PADDLE, PINBALL, VARIANTS, WALLS, assert_same, make_sync, make_vec, name, scripted
 
 from bounce_env.games.kernels import reset_worlds, step_worlds
 from bounce_env.registration import ENTRIES
+from tests.conftest import soak_count
+from tests.env.rollouts import MODES, PADDLE, PINBALL, VARIANTS, WALLS, assert_same, make_sync, make_vec, name, scripted
 
 WORLDS = 5
 SEED = 40

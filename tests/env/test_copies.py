@@ -6,9 +6,9 @@ import pickle
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import KINDS, PADDLE, PINBALL, WALLS, assert_same, make_vec, name, scripted
 
 from bounce_env.sb3 import BounceVecEnv
+from tests.env.rollouts import KINDS, PADDLE, PINBALL, WALLS, assert_same, make_vec, name, scripted
 
 COPIES = [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))]
 each_copy = pytest.mark.parametrize("copied", COPIES, ids=["deepcopy", "pickle"])

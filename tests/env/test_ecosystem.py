@@ -6,9 +6,12 @@ import pytest
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode
 from gymnasium.wrappers import RecordEpisodeStatistics, RecordVideo
 from gymnasium.wrappers import vector as vector_wrappers
-from rollouts import PADDLE, assert_same, make_env, make_sync, make_vec, scripted
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv
+
+from tests.env.rollouts import PADDLE, assert_same, make_env, make_sync, make_vec, scripted
+
+pytestmark = pytest.mark.slow
 
 WORLDS = 2
 SHORT = {"time_limit": 1.0}

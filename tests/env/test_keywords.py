@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 import stable_baselines3.common.env_checker
 from allpairspy import AllPairs
-from conftest import soak_count
 from gymnasium.envs.registration import EnvSpec
 from gymnasium.utils.env_checker import check_env
-from rollouts import PADDLE, PINBALL, WALLS, assert_same
 
 from bounce_env import load_scene
 from bounce_env.envs.paddle import PaddleEnv
 from bounce_env.envs.pinball import PinballEnv
 from bounce_env.envs.walls import WallsEnv
 from bounce_env.scene import dump_scene, scene_to_dict
+from tests.conftest import soak_count
+from tests.env.rollouts import PADDLE, PINBALL, WALLS, assert_same
 
 NAMES = {PADDLE: "paddle", PINBALL: "pinball", WALLS: "walls"}
 FORMS = ("default", "name", "text path", "path", "object", "dict")

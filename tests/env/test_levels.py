@@ -6,8 +6,6 @@ from itertools import combinations
 import gymnasium as gym
 import numpy as np
 import pytest
-from conftest import soak_count
-from rollouts import PADDLE, assert_same, make_vec, scripted
 
 from bounce_env import Bumper, load_scene
 from bounce_env.engine.memory.state import State
@@ -16,6 +14,8 @@ from bounce_env.envs.paddle import PaddleEnv
 from bounce_env.games.paddle.game import PaddleGame
 from bounce_env.games.paddle.levels import GAP, MOVING_FROM, RAIL, SPEED
 from bounce_env.games.paddle.setup import PaddleOptions
+from tests.conftest import soak_count
+from tests.env.rollouts import PADDLE, assert_same, make_vec, scripted
 
 BASE = load_scene("paddle_levels")
 

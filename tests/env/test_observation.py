@@ -7,11 +7,11 @@ from dataclasses import replace
 import gymnasium as gym
 import numpy as np
 import pytest
-from conftest import soak_count
-from rollouts import KINDS, PADDLE, assert_same, make_vec, name, scripted
 
 from bounce_env import Bumper, load_scene
 from bounce_env.games.paddle.setup import TOUCHES
+from tests.conftest import soak_count
+from tests.env.rollouts import KINDS, PADDLE, assert_same, make_vec, name, scripted
 
 WIDTH, BOTTOM, TOP = 1.0, -0.03, 1.4  # [m] the walls, the drain
 LEFT_STOP, RIGHT_STOP = 0.12, 0.88  # [m] of the paddle's centre

@@ -9,9 +9,11 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-from own_game import OwnEnv
 
 import bounce_env
+from tests.env.own_game import OwnEnv
+
+pytestmark = pytest.mark.slow
 
 OWN = "Own/Game-v0"
 

@@ -6,12 +6,12 @@ from itertools import pairwise
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import assert_same
 
 from bounce_env import Scene, Sensor, Wall, load_scene
 from bounce_env.games.pinball import setup
 from bounce_env.games.pinball.setup import layout_of, problems_of
 from bounce_env.render import Projection
+from tests.env.rollouts import assert_same
 
 PINBALL = "Bounce/Pinball-v0"
 NONE, LEFT, RIGHT, BOTH = range(4)

@@ -4,9 +4,13 @@ import math
 
 import gymnasium as gym
 import numpy as np
-from conftest import soak_count
-from rollouts import PINBALL
-from test_pinball import (
+
+from bounce_env.games.episode import FPS
+from bounce_env.games.pinball.setup import HOLD_FRAMES, NO, REST_FRAMES, SAVE_FRAMES, STUCK_FRAMES
+from bounce_env.scene import Flipper
+from tests.conftest import soak_count
+from tests.env.rollouts import PINBALL
+from tests.env.test_pinball import (
     BALLS,
     COOLING,
     FARMED,
@@ -24,10 +28,6 @@ from test_pinball import (
     begun,
     index,
 )
-
-from bounce_env.games.episode import FPS
-from bounce_env.games.pinball.setup import HOLD_FRAMES, NO, REST_FRAMES, SAVE_FRAMES, STUCK_FRAMES
-from bounce_env.scene import Flipper
 
 BOUNCES = 3  # after so many rounding may have grown to something
 NOW = 600  # the frame that a state made anew is in

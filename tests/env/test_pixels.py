@@ -8,7 +8,6 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-from rollouts import MODES, PADDLE, PINBALL, assert_same, make_sync, make_vec, scripted
 from stable_baselines3 import PPO
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
@@ -16,6 +15,7 @@ from bounce_env.envs import observations
 from bounce_env.registration import ENTRIES
 from bounce_env.render import Renderer
 from bounce_env.sb3 import BounceVecEnv
+from tests.env.rollouts import MODES, PADDLE, PINBALL, assert_same, make_sync, make_vec, scripted
 
 PIXELS = {"obs": "pixels", "height": 40}
 IDS = [entry.id for entry in ENTRIES]

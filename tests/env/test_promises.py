@@ -9,12 +9,12 @@ import threading
 import gymnasium as gym
 import numpy as np
 import pytest
-from conftest import require
 from gymnasium.wrappers import TimeAwareObservation, TimeLimit
-from rollouts import MODES, PADDLE, PINBALL, WALLS, assert_same, make_vec, scripted
 from stable_baselines3.common.monitor import Monitor
 
 from bounce_env.sb3 import BounceVecEnv
+from tests.conftest import require
+from tests.env.rollouts import MODES, PADDLE, PINBALL, WALLS, assert_same, make_vec, scripted
 
 IDS = (PADDLE, PINBALL, WALLS)
 

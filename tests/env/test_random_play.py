@@ -8,10 +8,12 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from rollouts import PADDLE, make_vec
 
 from bounce_env.registration import ENTRIES
+from tests.conftest import soak_count
+from tests.env.rollouts import PADDLE, make_vec
+
+pytestmark = pytest.mark.slow
 
 WORLDS = 128
 STEPS = 10_000_000

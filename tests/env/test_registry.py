@@ -9,10 +9,12 @@ import pytest
 import stable_baselines3.common.env_checker
 from gymnasium.envs.registration import EnvSpec
 from gymnasium.utils.env_checker import check_env
-from rollouts import MODES, VARIANTS, assert_same, name, scripted
 
 import bounce_env
 from bounce_env.registration import ENTRIES
+from tests.env.rollouts import MODES, VARIANTS, assert_same, name, scripted
+
+pytestmark = pytest.mark.fast
 
 # What a user may do with a fresh interpreter: the package is not imported, Gymnasium has to find it by the id's prefix.
 BY_PREFIX = """

@@ -3,10 +3,10 @@
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import PADDLE, assert_same, make_vec
 
 from bounce_env.render import Window
 from bounce_env.sb3 import BounceVecEnv
+from tests.env.rollouts import PADDLE, assert_same, make_vec
 
 BALL = (0.3, 0.5)  # [m] clear of everything
 

@@ -3,7 +3,6 @@
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import KINDS, PADDLE, PINBALL, WALLS, assert_same, name, scripted
 from stable_baselines3 import PPO
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
@@ -17,6 +16,9 @@ from stable_baselines3.common.vec_env import (
 )
 
 from bounce_env.sb3 import BounceVecEnv
+from tests.env.rollouts import KINDS, PADDLE, PINBALL, WALLS, assert_same, name, scripted
+
+pytestmark = pytest.mark.train
 
 WORLDS = 4
 SHORT = {"time_limit": 1.5}

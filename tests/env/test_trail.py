@@ -5,10 +5,10 @@ import math
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import PADDLE, PINBALL, assert_same, make_vec
 
 from bounce_env import Flipper
 from bounce_env.envs.trail import Flight, Trail
+from tests.env.rollouts import PADDLE, PINBALL, assert_same, make_vec
 
 RADIUS = 0.02  # [m] of the paddle game's ball
 G = 1.5  # m/s^2

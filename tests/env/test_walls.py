@@ -6,11 +6,11 @@ from dataclasses import replace
 import gymnasium as gym
 import numpy as np
 import pytest
-from rollouts import WALLS, assert_same, make_vec, scripted
 
 from bounce_env import Ball, Scene, Sensor, Wall, load_scene
 from bounce_env.render.projection import Projection
 from bounce_env.sb3 import BounceVecEnv
+from tests.env.rollouts import WALLS, assert_same, make_vec, scripted
 
 # Where the observation has what.
 BALL, VELOCITY, ENDS, TARGET = slice(0, 2), slice(2, 4), slice(4, 8), slice(8, 10)

@@ -4,7 +4,7 @@ The hash covers observations, rewards and flags of 64 worlds over 600 steps with
 changes it has changed what an id means, and says so in CHANGELOG.md: an agent trained before may play worse after. The
 new one is printed by
 
-    python tests/golden/test_golden.py Bounce/Paddle-v0
+    python -m tests.golden.test_golden Bounce/Paddle-v0
 """
 
 import hashlib
@@ -15,6 +15,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+pytestmark = pytest.mark.golden
 
 GOLDEN = {
     "Bounce/Paddle-v0": "882cd901166dabf4fe8977cd69258c1e6eafc5e7b76ef6453636773070917294",

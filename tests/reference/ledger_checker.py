@@ -3,7 +3,7 @@
 `find_problems(scene, start, ledger, end, commands)` goes from row to row: every flight must lead to the next row, every
 bounce obey the law on the true surface, every contact begin and end with a reason, every part stop where its motion
 ends. Then the whole path of each ball is searched for sensor crossings that were missed, and for elements and balls
-that it went through. No code of the engine takes part; what it must do is in design.md, "Physics contract".
+that it went through. No code of the engine takes part; what it must do is in docs/physics.md.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from ledger_drive import Command
-from ledger_gaps import least_distances
-from ledger_pairs import PairChecks
-from ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, CRUSH, PART_STOPS, Row, apart
-from ledger_sensors import Whole
-from ledger_setting import EXACT, STANDING, TOLERANCE, Setting
-from ledger_touch import ULP, Ledger
-from ledger_walk import State
 
 from bounce_env.scene import Scene
+from tests.reference.ledger_drive import Command
+from tests.reference.ledger_gaps import least_distances
+from tests.reference.ledger_pairs import PairChecks
+from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, CRUSH, PART_STOPS, Row, apart
+from tests.reference.ledger_sensors import Whole
+from tests.reference.ledger_setting import EXACT, STANDING, TOLERANCE, Setting
+from tests.reference.ledger_touch import ULP, Ledger
+from tests.reference.ledger_walk import State
 
 OK, BUDGET, CRUSHED, OUT = range(4)
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from ledger_law import Rules, Surface, is_friction, is_soft, pressing, rolling_speed, split
-from ledger_touch import Bearing, Vector
+from tests.reference.ledger_law import Rules, Surface, is_friction, is_soft, pressing, rolling_speed, split
+from tests.reference.ledger_touch import Bearing, Vector
 
 PRESSING = 2.0**-40  # share of the acceleration: pressed less than this, friction holds nothing
 ALIGNED = 1e-9  # by how much the normals that carry a ball may miss the direction of what they carry
@@ -165,7 +165,7 @@ def hop(surface: Surface, rules: Rules, v: Vector) -> Vector | None:
 def settling(surface: Surface, rules: Rules, v: Vector) -> Settling | None:
     """The end of bounces on a wall after one that leaves the ball with velocity `v`; None where they go on.
 
-    Hops of durations tau, b tau, b^2 tau ...: anchors/numerics.md, check 2.
+    Hops of durations tau, b tau, b^2 tau ...: docs/physics.md, "Infinitely many bounces".
     """
     s = surface
     closing, slid = split(s, *v)

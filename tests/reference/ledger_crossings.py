@@ -13,10 +13,19 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from ledger_motion import PartRun
-from ledger_paths import HALVINGS, Floats, Piece, Point, Track, parabola_roots, turning_time, turning_times
 
 from bounce_env.scene.base import Box
+from tests.reference.ledger_motion import PartRun
+from tests.reference.ledger_paths import (
+    HALVINGS,
+    Floats,
+    Piece,
+    Point,
+    Track,
+    parabola_roots,
+    turning_time,
+    turning_times,
+)
 
 
 class Straight(NamedTuple):

@@ -12,10 +12,10 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from ledger_motion import Halt, PartRun, Vector, runs_of
-from ledger_row import CRUSH, PART_STOPS, Row, apart
 
 from bounce_env.scene import Flipper, Scene, Wall
+from tests.reference.ledger_motion import Halt, PartRun, Vector, runs_of
+from tests.reference.ledger_row import CRUSH, PART_STOPS, Row, apart
 
 Value = float | bool | tuple[float, float] | tuple[Vector, Vector]
 Command = tuple[float, str, Value]

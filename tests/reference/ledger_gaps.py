@@ -11,11 +11,11 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from ledger_motion import Core, PartRun
-from ledger_paths import Floats, Piece, Track, to_arc, to_point, to_segment, track_of
-from ledger_shapes import Ints, Shapes, direction
 
 from bounce_env.scene import Arc, Bumper, Scene, Wall
+from tests.reference.ledger_motion import Core, PartRun
+from tests.reference.ledger_paths import Floats, Piece, Track, to_arc, to_point, to_segment, track_of
+from tests.reference.ledger_shapes import Ints, Shapes, direction
 
 
 class Gaps(NamedTuple):

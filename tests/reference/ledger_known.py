@@ -11,16 +11,16 @@ from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
-from ledger_contact import PRESSING, is_carried, is_over
-from ledger_law import Surface, is_friction, least_rebound
-from ledger_motion import Turning
-from ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH, Row, apart
-from ledger_sensors import Report
-from ledger_setting import EXACT, STANDING, TOLERANCE, Setting
-from ledger_touch import ULP, Bearing, Ledger, Own, Touches, Vector
-from ledger_walk import Bearer, Mode, State, Walk
 
 from bounce_env.scene import Field, Sensor
+from tests.reference.ledger_contact import PRESSING, is_carried, is_over
+from tests.reference.ledger_law import Surface, is_friction, least_rebound
+from tests.reference.ledger_motion import Turning
+from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH, Row, apart
+from tests.reference.ledger_sensors import Report
+from tests.reference.ledger_setting import EXACT, STANDING, TOLERANCE, Setting
+from tests.reference.ledger_touch import ULP, Bearing, Ledger, Own, Touches, Vector
+from tests.reference.ledger_walk import Bearer, Mode, State, Walk
 
 BOUNCES_AT_ONE_INSTANT = 32  # after so many the ball is stopped by what it touches
 

@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from ledger_checker import BUDGET, End, Start, find_problems_of_all
-from ledger_drive import Command, Value
-from moving_scenes import command_at_random, moving_scene
-from moving_scenes import start as place_at_random
-from stability_case import new_world
 
 from bounce_env.engine.world import World
 from bounce_env.scene import Ball, Bumper, Element, Flipper, Paddle, Scene, Wall
+from tests.engine.moving_scenes import command_at_random, moving_scene
+from tests.engine.moving_scenes import start as place_at_random
+from tests.reference.ledger_checker import BUDGET, End, Start, find_problems_of_all
+from tests.reference.ledger_drive import Command, Value
+from tests.stability.stability_case import new_world
 
 Point = tuple[float, float]
 

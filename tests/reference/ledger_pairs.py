@@ -8,14 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Sequence
 
-from ledger_contact import closing_on
-from ledger_known import Way
-from ledger_law import ROLLING, capped
-from ledger_row import BOUNCE, Row, apart
-from ledger_rows import RowChecks
-from ledger_setting import CLEARANCE, EXACT, TOLERANCE
-from ledger_touch import ULP, Vector
-from ledger_walk import Bearer, Mode, State
+from tests.reference.ledger_contact import closing_on
+from tests.reference.ledger_known import Way
+from tests.reference.ledger_law import ROLLING, capped
+from tests.reference.ledger_row import BOUNCE, Row, apart
+from tests.reference.ledger_rows import RowChecks
+from tests.reference.ledger_setting import CLEARANCE, EXACT, TOLERANCE
+from tests.reference.ledger_touch import ULP, Vector
+from tests.reference.ledger_walk import Bearer, Mode, State
 
 OPPOSED = 0.5
 

@@ -8,18 +8,26 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from ledger_contact import Settling, after_contact, along, closing_on, hop, press_on, projections, settling
-from ledger_known import Known, Way
-from ledger_law import HOP_ULPS, Surface, outcomes, split
-from ledger_motion import Core
-from ledger_row import BOUNCE, CONTACT_BEGINS, Row, apart
-from ledger_sensors import Report, curve_of
-from ledger_setting import EXACT, TOLERANCE
-from ledger_shapes import direction
-from ledger_touch import ULP, Bearing, Own
-from ledger_walk import Bearer, Mode, State
-
 from bounce_env.scene import Sensor, Wall
+from tests.reference.ledger_contact import (
+    Settling,
+    after_contact,
+    along,
+    closing_on,
+    hop,
+    press_on,
+    projections,
+    settling,
+)
+from tests.reference.ledger_known import Known, Way
+from tests.reference.ledger_law import HOP_ULPS, Surface, outcomes, split
+from tests.reference.ledger_motion import Core
+from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, Row, apart
+from tests.reference.ledger_sensors import Report, curve_of
+from tests.reference.ledger_setting import EXACT, TOLERANCE
+from tests.reference.ledger_shapes import direction
+from tests.reference.ledger_touch import ULP, Bearing, Own
+from tests.reference.ledger_walk import Bearer, Mode, State
 
 
 class RowChecks(Known):

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from ledger_checker import BUDGET, End, Start
-from ledger_walk import Command
-from random_scenes import Point, box, direction, free_point
 
 from bounce_env.engine.world import World
 from bounce_env.scene import Arc, Ball, Bumper, Element, Field, Paddle, Scene, Sensor, Wall
+from tests.reference.ledger_checker import BUDGET, End, Start
+from tests.reference.ledger_walk import Command
+from tests.reference.random_scenes import Point, box, direction, free_point
 
 
 class Script(NamedTuple):

@@ -11,12 +11,12 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
-from ledger_crossings import Circular, Curve, Straight, Swept, last_sides, passages
-from ledger_gaps import least_gaps
-from ledger_paths import Piece, Point, track_of
-from ledger_shapes import Bow, Line, Shapes, direction
 
 from bounce_env.scene import Scene, Sensor
+from tests.reference.ledger_crossings import Circular, Curve, Straight, Swept, last_sides, passages
+from tests.reference.ledger_gaps import least_gaps
+from tests.reference.ledger_paths import Piece, Point, track_of
+from tests.reference.ledger_shapes import Bow, Line, Shapes, direction
 
 ULP = 2.0**-52
 Switches = dict[int, list[tuple[float, bool]]]

@@ -9,14 +9,13 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ledger_drive import Command, Drive, is_command
-from ledger_law import HOP_ULPS, Rules
-from ledger_row import BOUNCE, Row
-from ledger_sensors import Switches
-from ledger_shapes import Shapes
-from ledger_touch import Ledger
-
 from bounce_env.scene import Arc, Scene
+from tests.reference.ledger_drive import Command, Drive, is_command
+from tests.reference.ledger_law import HOP_ULPS, Rules
+from tests.reference.ledger_row import BOUNCE, Row
+from tests.reference.ledger_sensors import Switches
+from tests.reference.ledger_shapes import Shapes
+from tests.reference.ledger_touch import Ledger
 
 TOLERANCE = 1e-9  # of lengths relative to the scene's size, of speeds relative to those that enter
 EXACT = 1e-12  # what one formula may lose

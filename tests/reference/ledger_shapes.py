@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from ledger_motion import PartRun
-from ledger_paths import Floats, Point
 
 from bounce_env.scene import Arc, Bumper, Scene, Wall
+from tests.reference.ledger_motion import PartRun
+from tests.reference.ledger_paths import Floats, Point
 
 Ints = npt.NDArray[np.int64]
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from conftest import SOAK
 
 from bounce_env.scene import Scene
+from tests.conftest import SOAK
 
 Rows = npt.NDArray[Any]
 

@@ -11,11 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from ledger_motion import PartRun
-from ledger_paths import Floats
-from ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH
-from ledger_shapes import Feature, Line, Round, Shapes
-from ledger_walk import State
+
+from tests.reference.ledger_motion import PartRun
+from tests.reference.ledger_paths import Floats
+from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH
+from tests.reference.ledger_shapes import Feature, Line, Round, Shapes
+from tests.reference.ledger_walk import State
 
 ULP = 2.0**-52
 SURELY = 4.0 * ULP  # a gap that is this share of the extent or less is a touch to the engine, too

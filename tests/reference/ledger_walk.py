@@ -11,10 +11,9 @@ from collections.abc import Sequence
 from enum import Enum, auto
 from typing import NamedTuple
 
-from ledger_drive import Command, is_command
-from ledger_paths import Piece, Pull
-
 from bounce_env.scene import Field, Scene
+from tests.reference.ledger_drive import Command, is_command
+from tests.reference.ledger_paths import Piece, Pull
 
 LONGEST = 10_000  # pieces of one flight: no ball passes more borders of fields than that between two events
 

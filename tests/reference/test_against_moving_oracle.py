@@ -10,13 +10,15 @@ from collections import Counter
 import mpmath
 import numpy as np
 import pytest
-from conftest import soak_count
-from moving_oracle import MovingOracle
 from mpmath import mpf
-from stability_case import new_world
 
 from bounce_env.engine.placement import cores_at_start, place_clear, separate
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Wall
+from tests.conftest import soak_count
+from tests.reference.moving_oracle import MovingOracle
+from tests.stability.stability_case import new_world
+
+pytestmark = pytest.mark.slow
 
 SECONDS = 2.0
 TINY = mpf(2) ** -100

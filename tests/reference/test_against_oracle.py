@@ -10,13 +10,15 @@ from collections import Counter
 import mpmath
 import numpy as np
 import pytest
-from conftest import soak_count
 from mpmath import mpf
-from oracle import BOUNCE, PART_STOPS, SENSOR, Oracle
-from random_scenes import box, direction, free_point, table
 
 from bounce_env.engine.world import World
 from bounce_env.scene import Ball, Scene
+from tests.conftest import soak_count
+from tests.reference.oracle import BOUNCE, PART_STOPS, SENSOR, Oracle
+from tests.reference.random_scenes import box, direction, free_point, table
+
+pytestmark = pytest.mark.slow
 
 OUT = 3
 SECONDS = 4.0

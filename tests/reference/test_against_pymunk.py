@@ -11,11 +11,13 @@ import math
 import numpy as np
 import pymunk
 import pytest
-from conftest import soak_count
-from random_scenes import box, direction, free_point
 
 from bounce_env.engine.world import World
 from bounce_env.scene import Ball, Bumper, Scene, Wall
+from tests.conftest import soak_count
+from tests.reference.random_scenes import box, direction, free_point
+
+pytestmark = pytest.mark.slow
 
 STEPS = 240 * 2 ** np.arange(5)  # per second: 240 to 3840
 SHORTEST_FLIGHT = 0.05  # [s], 12 of the longest steps before the bounce and after it

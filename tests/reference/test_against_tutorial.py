@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from random_scenes import walls_only
 
 from bounce_env.engine import tutorial
 from bounce_env.engine.world import World
+from tests.conftest import soak_count
+from tests.reference.random_scenes import walls_only
+
+pytestmark = pytest.mark.slow
 
 TICKS = 60
 DT = 0.25  # long enough for several bounces in one tick

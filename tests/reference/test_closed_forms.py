@@ -105,7 +105,7 @@ def test_sensor_on_which_the_ball_bounces():
 
 @pytest.mark.parametrize("n", [2, 4, 6])
 def test_corner_of_pi_over_n_reverses_exactly(n):
-    """Unfolding: n reflections in a corner of pi/n, n even, are a turn by pi (anchors/numerics.md, check 9)."""
+    """Unfolding: n reflections in a corner of pi/n, n even, are a turn by pi."""
     angle = math.pi / n
     walls = (Wall((0, 0), (10, 0)), Wall((0, 0), (10 * math.cos(angle), 10 * math.sin(angle))))
     scene = Scene(gravity=(0, 0), elements=walls)

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from ledger_checker import End, Start, find_problems
-from ledger_scenes import played, standing, with_all_kinds
-from ledger_tampering import changes
-from random_scenes import box, table
 
 from bounce_env.scene import Arc, Ball, Bumper, Field, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
+from tests.conftest import soak_count
+from tests.reference.ledger_checker import End, Start, find_problems
+from tests.reference.ledger_scenes import played, standing, with_all_kinds
+from tests.reference.ledger_tampering import changes
+from tests.reference.random_scenes import box, table
 
 
 class Played(NamedTuple):

@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from ledger_gaps import least_distances, least_gaps
-from ledger_motion import run_of
-from ledger_paths import Piece, track_of
-from ledger_shapes import Shapes
 
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Wall
+from tests.conftest import soak_count
+from tests.reference.ledger_gaps import least_distances, least_gaps
+from tests.reference.ledger_motion import run_of
+from tests.reference.ledger_paths import Piece, track_of
+from tests.reference.ledger_shapes import Shapes
 
 DENSE = np.linspace(0.0, 1.0, 20_001)
 ALLOWED = 1e-9

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import SOAK, soak_count
-from ledger_checker import End
-from ledger_of_moving import BY_HAND, at_random, run
-from ledger_row import CRUSH, PART_STOPS
-from ledger_tampering import changes, pair_changes
 
 from bounce_env.scene import Flipper, Paddle, Wall
+from tests.conftest import SOAK, soak_count
+from tests.reference.ledger_checker import End
+from tests.reference.ledger_of_moving import BY_HAND, at_random, run
+from tests.reference.ledger_row import CRUSH, PART_STOPS
+from tests.reference.ledger_tampering import changes, pair_changes
 
 SECONDS, EVENTS = 3.0, 250  # of random scenes, and events in one piece of them
 

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from ledger_crossings import Circular, Straight, passages
-from ledger_paths import Piece, to_arc, to_point, to_segment, track_of
-from ledger_walk import State, Walk
 
 from bounce_env.scene import Field, Scene
+from tests.conftest import soak_count
+from tests.reference.ledger_crossings import Circular, Straight, passages
+from tests.reference.ledger_paths import Piece, to_arc, to_point, to_segment, track_of
+from tests.reference.ledger_walk import State, Walk
 
 DENSE = np.linspace(0.0, 1.0, 20_001)
 

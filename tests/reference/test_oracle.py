@@ -4,13 +4,13 @@ from itertools import pairwise
 
 import mpmath
 import pytest
-from conftest import soak_count
 from mpmath import mpf
-from oracle import BOUNCE, PART_STOPS, SENSOR, Oracle
-from polynomials import evaluate, roots
-from random_scenes import box, clearance, table
 
 from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall
+from tests.conftest import soak_count
+from tests.reference.oracle import BOUNCE, PART_STOPS, SENSOR, Oracle
+from tests.reference.polynomials import evaluate, roots
+from tests.reference.random_scenes import box, clearance, table
 
 
 @pytest.fixture(autouse=True)

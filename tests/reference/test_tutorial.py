@@ -4,14 +4,16 @@ import math
 
 import numpy as np
 import pytest
-from conftest import soak_count
 from hypothesis import given
 from hypothesis import strategies as st
-from random_scenes import box, walls_only
 
 from bounce_env.engine import tutorial
 from bounce_env.engine.tutorial import Vector, bounce, run, start, step
 from bounce_env.scene import Ball, Bumper, Scene, Wall
+from tests.conftest import soak_count
+from tests.reference.random_scenes import box, walls_only
+
+pytestmark = pytest.mark.fast
 
 number = st.floats(-1e3, 1e3)
 share = st.floats(0, 2)

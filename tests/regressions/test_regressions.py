@@ -18,9 +18,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from stability_case import STATUS, Run, new_world
 
 from bounce_env import World, load_scene
+from tests.stability.stability_case import STATUS, Run, new_world
 
 FOLDER = Path(__file__).parent / "cases"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.json"))

@@ -6,8 +6,13 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from pixel_scenes import (
+
+from bounce_env.engine.placement import cores_at_start
+from bounce_env.render import Picture, Renderer, painter
+from bounce_env.render.shapes import Stroke
+from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
+from tests.conftest import soak_count
+from tests.render.pixel_scenes import (
     INDEX,
     PADDLE,
     TABLE,
@@ -21,10 +26,7 @@ from pixel_scenes import (
     table_renderer,
 )
 
-from bounce_env.engine.placement import cores_at_start
-from bounce_env.render import Picture, Renderer, painter
-from bounce_env.render.shapes import Stroke
-from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
+pytestmark = pytest.mark.fast
 
 SIZES = [(84, 84), (256, 384), (400, 560), (None, None)]
 
@@ -292,7 +294,8 @@ def test_the_same_picture_gives_the_same_bytes_whatever_was_drawn_before() -> No
 
 def test_another_process_gives_the_same_bytes() -> None:
     program = (
-        "import hashlib; from pixel_scenes import TABLE; from test_render_frame import busy_picture;"
+        "import hashlib; from tests.render.pixel_scenes import TABLE;"
+        "from tests.render.test_render_frame import busy_picture;"
         "from bounce_env.render import Renderer;"
         "print(hashlib.sha256(Renderer(TABLE).frame(busy_picture(5))).hexdigest())"
     )

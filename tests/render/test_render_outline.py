@@ -8,6 +8,8 @@ from bounce_env.games.pinball.setup import hidden_of
 from bounce_env.render import Picture, Renderer
 from bounce_env.render.outline import clipped, islands, view_box
 
+pytestmark = pytest.mark.fast
+
 BOX = (Wall((0, 0), (10, 0)), Wall((10, 0), (10, 10)), Wall((10, 10), (0, 10)), Wall((0, 10), (0, 0)))
 TRIANGLE = (Wall((1, 1), (2, 1)), Wall((2, 1), (1, 2)), Wall((1, 2), (1, 1)))
 

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
-from conftest import soak_count
 
 from bounce_env.render import Projection
 from bounce_env.render.projection import DEFAULT_HEIGHT, LARGEST_SIDE, LONGEST_SHAPE, MARGIN
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.fast
 
 BOUNDS = (-0.5, 0.2, 0.5, 1.6)
 

@@ -5,12 +5,14 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
-from conftest import soak_count
-from pixel_scenes import centroid, changed, distances
 
 from bounce_env.render import Picture, Renderer
 from bounce_env.render.shapes import still_look
 from bounce_env.scene import Arc, Ball, Bumper, Element, Field, Scene, Sensor, Wall
+from tests.conftest import soak_count
+from tests.render.pixel_scenes import centroid, changed, distances
+
+pytestmark = pytest.mark.fast
 
 Pixels = npt.NDArray[np.uint8]
 SIZES = [(84, 84), (256, 384), (500, 500), (None, None)]

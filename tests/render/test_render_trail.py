@@ -6,6 +6,8 @@ import pytest
 from bounce_env.render import Picture, Renderer
 from bounce_env.scene import Ball, Scene, Wall
 
+pytestmark = pytest.mark.fast
+
 WALLS = (Wall((0, 0), (1, 0)), Wall((0, 1), (1, 1)))
 
 

@@ -5,9 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 import pytest
-from pixel_scenes import PADDLE, TABLE
 
 from bounce_env.render import Picture, Renderer, Window
+from tests.render.pixel_scenes import PADDLE, TABLE
+
+pytestmark = pytest.mark.fast
 
 pygame = pytest.importorskip("pygame")
 

@@ -1,4 +1,4 @@
-"""The built-in scenes: they ship with the package and are what games.md and numerics.md say."""
+"""The built-in scenes: they ship with the package and are what their descriptions say."""
 
 import math
 import re
@@ -17,6 +17,8 @@ import pytest
 
 import bounce_env
 from bounce_env.scene import Ball, Bumper, Element, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
+
+pytestmark = pytest.mark.fast
 
 
 def elements(scene: Scene, spec: type) -> list:

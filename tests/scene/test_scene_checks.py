@@ -5,6 +5,8 @@ import pytest
 from bounce_env.scene import Arc, Ball, Bumper, Field, Paddle, Scene, SceneError, Sensor, Wall
 from bounce_env.scene.errors import ABSENT
 
+pytestmark = pytest.mark.fast
+
 FLOOR = Wall((0, 0), (1, 0), name="floor")
 
 

@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from conftest import soak_count
 
 from bounce_env import World, load_scene
 from bounce_env.engine.memory.records import OUT
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.fast
 
 BOUNCE, BEGINS, ENDS, SENSOR = range(4)
 

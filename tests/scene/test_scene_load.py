@@ -17,6 +17,8 @@ from bounce_env.scene import (
     scene_from_dict,
 )
 
+pytestmark = pytest.mark.fast
+
 POINT = "two numbers [x, y], each from -1e+09 to 1e+09"
 ZERO_OR_MORE = "a number >= 0 (at most 1e+09)"
 POSITIVE = "a number > 0 (from 1e-09 to 1e+09)"

@@ -7,6 +7,8 @@ import pytest
 
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Paddle, Scene, SceneError, Sensor, Wall, load_scene
 
+pytestmark = pytest.mark.fast
+
 POINT = "two numbers [x, y], each from -1e+09 to 1e+09"
 POINTS = "at least 3 points [x, y], each number from -1e+09 to 1e+09"
 ANGLE = "a number of radians, from -100 to 100"

@@ -11,6 +11,8 @@ from bounce_env.scene import SceneError, builtin_scenes, load_scene
 from bounce_env.scene.load import _BUILTIN
 from bounce_env.scene.places import places_of
 
+pytestmark = pytest.mark.fast
+
 FILE = '''# a table ] } = "
 gravity = [0, -1] # [[elements]]
 max_speed = 1_000.5

@@ -5,7 +5,6 @@ import tomllib
 from dataclasses import replace
 
 import pytest
-from conftest import soak_count
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -24,6 +23,9 @@ from bounce_env.scene import (
     load_scene,
     scene_from_dict,
 )
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.fast
 
 
 def polygon(corners: int, center: tuple[float, float], radius: float) -> list[tuple[float, float]]:

@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from conftest import soak_count
 
 from bounce_env.scene import Arc, Field, Scene, SceneError, Sensor, Wall
 from bounce_env.scene.errors import ABSENT
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.fast
 
 TURN = 2 * math.pi
 POINT = "two numbers [x, y], each from -1e+09 to 1e+09"

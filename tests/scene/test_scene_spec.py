@@ -13,6 +13,8 @@ from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, S
 from bounce_env.scene.errors import ABSENT
 from bounce_env.wording import nearest
 
+pytestmark = pytest.mark.fast
+
 SEGMENT = {"start": (0.0, 0.0), "end": (3.0, 4.0)}
 CIRCLE = {"center": (0.0, 0.0), "radius": 1.0}
 RAIL = {"rail_start": (0.0, 0.0), "rail_end": (3.0, 4.0), "half_width": 0.1, "radius": 0.1, "max_speed": 1.0}

@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from conftest import soak_count
 
 from bounce_env import Arc, Bumper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
 from bounce_env.scenecheck.crossings import crossings
+from tests.conftest import soak_count
+
+pytestmark = pytest.mark.fast
 
 
 def pairs(*elements):

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tables import CUP, POCKET, SOUND, WALLED_IN
 
 from bounce_env import World
 from bounce_env.scene import Scene, Wall, load_scene
@@ -12,6 +11,7 @@ from bounce_env.scenecheck import Finding, Survey, findings, survey
 from bounce_env.scenecheck.follow import CRUSHES, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
 from bounce_env.scenecheck.reach import reach_boxes
 from bounce_env.scenecheck.run import ENDLESS_AT
+from tests.scenecheck.tables import CUP, POCKET, SOUND, WALLED_IN
 
 BALLS = 2000
 

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tables import CUP, SOUND, box, table
 
 from bounce_env.engine.placement import cores_at_start, gaps
 from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, load_scene
@@ -12,6 +11,7 @@ from bounce_env.scenecheck.inside import inside_of
 from bounce_env.scenecheck.places import clusters
 from bounce_env.scenecheck.reach import reach_boxes, scores, with_borders
 from bounce_env.scenecheck.starts import NoRoomError, fastest, random_starts
+from tests.scenecheck.tables import CUP, SOUND, box, table
 
 
 @pytest.mark.parametrize(

@@ -2,10 +2,9 @@
 
 import math
 
-from moving_paddles import DOWN, FREE, NEAR, R, scene
-from stability_case import ULP, Case, Expect, at, between, count, going, of_row, when
-
 from bounce_env.scene import Ball, Wall
+from tests.stability.moving_paddles import DOWN, FREE, NEAR, R, scene
+from tests.stability.stability_case import ULP, Case, Expect, at, between, count, going, of_row, when
 
 POINT = Ball()
 Ends = tuple[tuple[float, float], tuple[float, float]]

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from stability_case import Case, Point, Run, Step
 
 from bounce_env.scene import Arc, Bumper, Element, Field, Flipper, Paddle, Scene, Sensor, Wall
+from tests.stability.stability_case import Case, Point, Run, Step
 
 
 @dataclass(frozen=True)

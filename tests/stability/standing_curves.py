@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable
 
 import mpmath
-from stability_case import ULP, Case, Expect, Run, at, between, count, going, of_row, speed, when
-from standing_drops import NEAR, G, R, floor
 
 from bounce_env.scene import Arc, Ball, Bumper, Scene, Wall
+from tests.stability.stability_case import ULP, Case, Expect, Run, at, between, count, going, of_row, speed, when
+from tests.stability.standing_drops import NEAR, G, R, floor
 
 TURN = 2 * math.pi
 # A ball that slides off a circle of 1 m from theta = 0.1 leaves it at cos(theta) = 2/3 cos(0.1), v^2 = g cos(theta).

@@ -3,9 +3,9 @@
 import math
 
 import mpmath
-from stability_case import ULP, Case, at, between, count, going, of_row, resting, when
 
 from bounce_env.scene import Ball, Scene, Wall
+from tests.stability.stability_case import ULP, Case, at, between, count, going, of_row, resting, when
 
 G, R = 9.81, 0.125
 SIZE = 4.0  # [m] extent of the scenes here, rounded up to a power of two
@@ -44,7 +44,7 @@ def _drop(e: float, r: float) -> Case:
     rest = rest_time(1.0, e)
     return Case(
         name=f"drop e={e} r={r}",
-        why="numerics.md, check 1: geometric series, rest at sqrt(2 h / g) (1 + e) / (1 - e), hop n rises h e^(2n)",
+        why="geometric series, rest at sqrt(2 h / g) (1 + e) / (1 - e), hop n rises h e^(2n)",
         scene=Scene(gravity=(0, -G), ball=Ball(radius=r, b=e), elements=(floor(),)),
         position=(0.25, 1 + r),
         script=(rest + 1.0,),
@@ -79,7 +79,7 @@ def _elastic(bounces: int) -> Case:
     period = 2 * math.sqrt(2 * h / G)
     return Case(
         name=f"{bounces} elastic bounces",
-        why="energy is conserved: v^2 / 2 + g y is g h, so the peak is h (numerics.md: +-1e-10)",
+        why="energy is conserved: v^2 / 2 + g y is g h, so the peak is h",
         scene=Scene(gravity=(0, -G), ball=Ball(radius=R), elements=(floor(),)),
         position=(0.0, h + R),
         script=(period * (bounces + 0.25),),
@@ -99,7 +99,7 @@ def _sideways(name: str, gravity: tuple[float, float]) -> Case:
     rest = rest_time(1.0, 0.5, g)
     return Case(
         name=f"drop under gravity {name}",
-        why="numerics.md, check 1, along any direction",
+        why="the same along any direction",
         scene=Scene(gravity=gravity, ball=Ball(radius=R, b=0.5), elements=(wall,)),
         position=(-(1 + R) * down[0], -(1 + R) * down[1]),
         script=(2 * rest,),
@@ -109,7 +109,7 @@ def _sideways(name: str, gravity: tuple[float, float]) -> Case:
 
 
 def _incline(f: float, e: float) -> Case:
-    """First hop tau = 2 v_n / g_n from the slope itself; numerics.md, check 2."""
+    """First hop tau = 2 v_n / g_n from the slope itself; docs/physics.md, "Infinitely many bounces"."""
     vn, vt, g_n, g_t = 3 * (1 - e), 0.75, G * C30, G * S30
     tau = 2 * vn / g_n
     rest = tau / (1 - e)
@@ -120,7 +120,7 @@ def _incline(f: float, e: float) -> Case:
     final = v + g_t * later if f == 1 else 0.0
     return Case(
         name=f"Zeno on a slope e={e} f={f}",
-        why="numerics.md, check 2; then it slides at g / 2 (f = 1) or is held (f < 1)",
+        why="sum of a geometric series; then it slides at g / 2 (f = 1) or is held (f < 1)",
         scene=Scene(gravity=(0, -G), ball=Ball(radius=R, b=e, f=f), elements=(slope(),)),
         position=on_slope(-1.5, R),
         velocity=(vt * C30 + vn * S30, -vt * S30 + vn * C30),

@@ -1,10 +1,9 @@
 """Kicks with threshold and cooldown."""
 
-from stability_case import ULP, Case, at, of_row, when
-from standing_commands import FREE
-from standing_drops import NEAR, R, floor
-
 from bounce_env.scene import Ball, Scene, Wall
+from tests.stability.stability_case import ULP, Case, at, of_row, when
+from tests.stability.standing_commands import FREE
+from tests.stability.standing_drops import NEAR, R, floor
 
 
 def _kick(name: str, v: float, v1: float, why: str, **surface: float) -> Case:

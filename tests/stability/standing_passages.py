@@ -2,10 +2,9 @@
 
 import math
 
-from stability_case import ULP, Case, at, going, resting, when
-from standing_drops import NEAR, G, R, floor, rest_time
-
 from bounce_env.scene import Ball, Scene, Sensor, Wall
+from tests.stability.stability_case import ULP, Case, at, going, resting, when
+from tests.stability.standing_drops import NEAR, G, R, floor, rest_time
 
 FREE = (0.0, 0.0)
 

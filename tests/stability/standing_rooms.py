@@ -3,10 +3,9 @@
 import math
 import random
 
-from stability_case import ULP, Case, Expect, Point, Run, at, between, going, resting, speed
-from standing_drops import NEAR, R
-
 from bounce_env.scene import Arc, Ball, Bumper, Element, Scene, Wall
+from tests.stability.stability_case import ULP, Case, Expect, Point, Run, at, between, going, resting, speed
+from tests.stability.standing_drops import NEAR, R
 
 FREE = (0.0, 0.0)
 

@@ -2,11 +2,10 @@
 
 import math
 
-from stability_case import ULP, Case, Point, at, between, going, last_time, resting, speed, when
-from standing_corners import HALF, left_out
-from standing_drops import CORNER, NEAR, G, R, rest_time
-
 from bounce_env.scene import Ball, Scene, Wall
+from tests.stability.stability_case import ULP, Case, Point, at, between, going, last_time, resting, speed, when
+from tests.stability.standing_corners import HALF, left_out
+from tests.stability.standing_drops import CORNER, NEAR, G, R, rest_time
 
 # In a V: which of the two walls a ball at rest is in contact with is left open, and a contact that goes on has no row.
 SETTLES = "((left|right) (bounce|begin|end), )+(left|right) (bounce|begin)"

@@ -1,4 +1,4 @@
-"""All outcomes of the stability suite as a table: `python tests/stability/table.py outcomes.csv` (or .json).
+"""All outcomes of the stability suite as a table: `python -m tests.stability.table outcomes.csv` (or .json).
 
 One row for each thing that a case expects: case, what, expected, seen, error and tolerance (SI units; for what is no
 number 0 is right and 1 is wrong), verdict, the status of the ball, and where the right answer comes from.
@@ -11,8 +11,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from stability_case import judge, play
-from stability_cases import CASES
+from tests.stability.stability_case import judge, play
+from tests.stability.stability_cases import CASES
 
 FIELDS = ("case", "what", "expected", "seen", "error", "tolerance", "verdict", "status", "why")
 

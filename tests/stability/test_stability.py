@@ -1,16 +1,19 @@
 """The stability suite: every case is right, and nothing about it depends on what must not matter.
 
-A case fails by name; `python tests/stability/table.py FILE` writes all outcomes, with their errors, to a file. The
+A case fails by name; `python -m tests.stability.table FILE` writes all outcomes, with their errors, to a file. The
 cases share two kernels, one for discs and one for points: those that have every feature of standing scenes.
 """
 
 import numpy as np
 import pytest
-from conftest import soak_count
-from stability_case import Case, Run, judge, new_world, play
-from stability_cases import CASES
-from stability_clearance import deepest
-from stability_images import Image
+
+from tests.conftest import soak_count
+from tests.stability.stability_case import Case, Run, judge, new_world, play
+from tests.stability.stability_cases import CASES
+from tests.stability.stability_clearance import deepest
+from tests.stability.stability_images import Image
+
+pytestmark = pytest.mark.slow
 
 SMALL, LARGE, SLOW = Image(length=2.0**-10), Image(length=2.0**19), Image(time=2.0**4)
 

@@ -1,7 +1,7 @@
 """What a ball does at an instant: it bounces from all that it touches, then it flies, slides or rests.
 
-Ever smaller bounces that lead to a contact with a straight surface are summed in closed form (the geometric series of
-anchors/numerics.md, check 2).
+Ever smaller bounces that lead to a contact with a straight surface are summed in closed form (docs/physics.md,
+"Infinitely many bounces").
 """
 
 import math

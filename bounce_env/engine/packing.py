@@ -44,7 +44,7 @@ def pack(
     points = {scene.ball.radius == 0.0 for scene in scenes}
     if len(points) > 1:
         raise ValueError("scenes of one batch must all have a ball of radius 0, or all of radius > 0")
-    tables = _tables(scenes)
+    tables = _packed_tables(scenes)
     if own_rows:
         tables = {name: None if t is None else np.repeat(t, worlds, axis=0) for name, t in tables.items()}
     state = new_state(tables, worlds, balls, point=points == {True}, switches=switches)
@@ -53,36 +53,36 @@ def pack(
     return state
 
 
-def _tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
+def _packed_tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
     """The tables of the scenes, by their names in `State`."""
-    faces = _table(FACE, scenes, _faces)
-    circles = _table(CIRCLE, scenes, _circles)
-    sensors = _table(SENSOR, scenes, _sensors)
-    arcs = _table(ARC, scenes, _arcs)
-    circle_sensors = _table(CIRCLE_SENSOR, scenes, _rings)
-    field_edges = _table(FIELD_EDGE, scenes, _edges)
-    parts = _table(PART, scenes, _parts)
-    rows = (_faces, _circles, _arcs, _sensors, _rings, _edges, _parts)
+    faces = _padded_table(FACE, scenes, _pack_faces)
+    circles = _padded_table(CIRCLE, scenes, _pack_circles)
+    sensors = _padded_table(SENSOR, scenes, _pack_sensors)
+    arcs = _padded_table(ARC, scenes, _pack_arcs)
+    circle_sensors = _padded_table(CIRCLE_SENSOR, scenes, _pack_circle_sensors)
+    field_edges = _padded_table(FIELD_EDGE, scenes, _pack_field_edges)
+    parts = _padded_table(PART, scenes, _pack_parts)
+    rows = (_pack_faces, _pack_circles, _pack_arcs, _pack_sensors, _pack_circle_sensors, _pack_field_edges, _pack_parts)
     heads = [
-        (len(s.elements), *(len(of(s)) for of in rows), extent(s), _cap(s), s.rest_speed, s.ball.radius, s.ball.b)
+        (len(s.elements), *(len(of(s)) for of in rows), extent(s), _max_speed(s), s.rest_speed, s.ball.radius, s.ball.b)
         for s in scenes
     ]
-    elements = _table(ELEMENT, scenes, _materials)
+    elements = _padded_table(ELEMENT, scenes, _pack_materials)
     gravity = np.array([scene.gravity for scene in scenes], np.float64)
     return {
         "scenes": np.array(heads, SCENE),
         "elements": np.zeros((len(scenes), 0), ELEMENT) if elements is None else elements,
         "gravity": gravity if gravity.any() or field_edges is not None else None,
         "faces": faces,
-        "one_way": _gates(scenes),
+        "one_way": _pack_one_way(scenes),
         "circles": circles,
         "arcs": arcs,
         "sensors": sensors,
         "circle_sensors": circle_sensors,
         "field_edges": field_edges,
         "parts": parts,
-        "turns": _turns(scenes),
-        "drag_limits": _guides(scenes),
+        "turns": _pack_turns(scenes),
+        "drag_limits": _pack_drag_limits(scenes),
         "drags": np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
     }
 
@@ -108,7 +108,7 @@ def direction(start: Point, end: Point) -> tuple[float, float, float]:
     return dx / length, dy / length, length * scale
 
 
-def _table(dtype: np.dtype[Any], scenes: Sequence[Scene], rows_of: Callable[[Scene], list[Row]]) -> Array | None:
+def _padded_table(dtype: np.dtype[Any], scenes: Sequence[Scene], rows_of: Callable[[Scene], list[Row]]) -> Array | None:
     rows = [rows_of(scene) for scene in scenes]
     widest = max(len(r) for r in rows)
     if widest == 0:
@@ -120,11 +120,11 @@ def _table(dtype: np.dtype[Any], scenes: Sequence[Scene], rows_of: Callable[[Sce
     return table
 
 
-def _cap(scene: Scene) -> float:
+def _max_speed(scene: Scene) -> float:
     return math.inf if scene.max_speed is None else scene.max_speed
 
 
-def _materials(scene: Scene) -> list[Row]:
+def _pack_materials(scene: Scene) -> list[Row]:
     ball = scene.ball
     return [
         (0.0, 0.0, 0.0, 0.0, 0.0)
@@ -134,18 +134,18 @@ def _materials(scene: Scene) -> list[Row]:
     ]
 
 
-def _walls(scene: Scene) -> Iterable[tuple[int, Wall]]:
+def _standing_walls(scene: Scene) -> Iterable[tuple[int, Wall]]:
     """The walls that stand."""
     return ((i, e) for i, e in enumerate(scene.elements) if isinstance(e, Wall) and not moves(e))
 
 
-def _faces(scene: Scene) -> list[Row]:
-    return [(*w.start, *direction(w.start, w.end), scene.ball.radius, i) for i, w in _walls(scene)]
+def _pack_faces(scene: Scene) -> list[Row]:
+    return [(*w.start, *direction(w.start, w.end), scene.ball.radius, i) for i, w in _standing_walls(scene)]
 
 
-def _gates(scenes: Sequence[Scene]) -> Array | None:
+def _pack_one_way(scenes: Sequence[Scene]) -> Array | None:
     """Which faces belong to one-way walls; None where there are none."""
-    flags = [[wall.one_way for _, wall in _walls(scene)] for scene in scenes]
+    flags = [[wall.one_way for _, wall in _standing_walls(scene)] for scene in scenes]
     if not any(map(any, flags)):
         return None
     one_way = np.zeros((len(scenes), max(map(len, flags))), np.int8)
@@ -158,12 +158,12 @@ def switch_ends(state: State, scene: Scene, disabled: Collection[int]) -> None:
     """Let the round ends in the tables of one scene be those of the elements that are not `disabled` (indices)."""
     if state.circles is None:
         return
-    rows = _circles(scene, disabled)
+    rows = _pack_circles(scene, disabled)
     state.circles[0, : len(rows)] = rows
     state.scenes[0]["circles"] = len(rows)
 
 
-def _circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:
+def _pack_circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:
     radius = scene.ball.radius
     rows: list[Row] = [
         (*e.center, e.radius + radius, i)
@@ -171,11 +171,11 @@ def _circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:
         if isinstance(e, Bumper) and not moves(e)
     ]
     if radius > 0.0:
-        rows += _ends(scene, disabled)
+        rows += _pack_round_ends(scene, disabled)
     return rows
 
 
-def _ends(scene: Scene, disabled: Collection[int]) -> list[Row]:
+def _pack_round_ends(scene: Scene, disabled: Collection[int]) -> list[Row]:
     """The round ends of walls and arcs. Of several at one point the first is kept: at a tie it is the one struck."""
     owner: dict[Point, int] = {}
     for i, element in enumerate(scene.elements):
@@ -196,7 +196,7 @@ def _end_points(element: object) -> tuple[Point, ...]:
     return ()
 
 
-def _arcs(scene: Scene) -> list[Row]:
+def _pack_arcs(scene: Scene) -> list[Row]:
     rows: list[Row] = []
     radius = scene.ball.radius
     for i, arc in enumerate(scene.elements):
@@ -209,7 +209,7 @@ def _arcs(scene: Scene) -> list[Row]:
     return rows
 
 
-def _sensors(scene: Scene) -> list[Row]:
+def _pack_sensors(scene: Scene) -> list[Row]:
     return [
         (*e.segment[0], *direction(*e.segment), int(e.drain), i)
         for i, e in enumerate(scene.elements)
@@ -217,7 +217,7 @@ def _sensors(scene: Scene) -> list[Row]:
     ]
 
 
-def _rings(scene: Scene) -> list[Row]:
+def _pack_circle_sensors(scene: Scene) -> list[Row]:
     return [
         (*e.circle[0], e.circle[1], int(e.drain), i)
         for i, e in enumerate(scene.elements)
@@ -225,7 +225,7 @@ def _rings(scene: Scene) -> list[Row]:
     ]
 
 
-def _edges(scene: Scene) -> list[Row]:
+def _pack_field_edges(scene: Scene) -> list[Row]:
     """The border lines of the fields, counter-clockwise; `last` is 1 on the last edge of each field."""
     rows: list[Row] = []
     for field in scene.elements:
@@ -242,11 +242,11 @@ def _turns_left(points: Sequence[Point]) -> bool:
     return (bx - ax) * (cy - by) > (by - ay) * (cx - bx)
 
 
-def _parts(scene: Scene) -> list[Row]:
-    return [(*_part(e, scene.ball.radius), i) for i, e in scene.parts]
+def _pack_parts(scene: Scene) -> list[Row]:
+    return [(*_pack_part(e, scene.ball.radius), i) for i, e in scene.parts]
 
 
-def _part(e: Part, ball_radius: float) -> Row:
+def _pack_part(e: Part, ball_radius: float) -> Row:
     """A PART but for the index of its element."""
     if isinstance(e, Wall):
         ux, uy, length = direction(e.start, e.end)
@@ -265,7 +265,7 @@ def _part(e: Part, ball_radius: float) -> Row:
     return (*e.rail_start, ux, uy, *shape, span, 0.5 * span, e.max_speed, e.max_speed, 0.0)
 
 
-def _turns(scenes: Sequence[Scene]) -> Array | None:
+def _pack_turns(scenes: Sequence[Scene]) -> Array | None:
     """Which way each part turns: 1, -1, or 0 for one that slides; None where none turns."""
     signs = [
         [(1 if e.active_angle > e.rest_angle else -1) if isinstance(e, Flipper) else 0 for _, e in scene.parts]
@@ -279,7 +279,7 @@ def _turns(scenes: Sequence[Scene]) -> Array | None:
     return turns
 
 
-def _guides(scenes: Sequence[Scene]) -> Array | None:
+def _pack_drag_limits(scenes: Sequence[Scene]) -> Array | None:
     """What bounds the way of each dragged wall, by part; None where no scene has any."""
     if not any(isinstance(e, Wall) for scene in scenes for _, e in scene.parts):
         return None

@@ -25,14 +25,14 @@ def place_clear(scene: Scene, cores: Mapping[int, Core], x: float, y: float, dis
     """
     allowed = START_OVERLAP * extent(scene)
     for index, element in enumerate(scene.elements):
-        nearest = _from_element(element, cores.get(index), x, y)
+        nearest = _distance_from_element(element, cores.get(index), x, y)
         if nearest is None or index in disabled:
             continue
         dx, dy, distance, radius = nearest
         overlap = radius + scene.ball.radius - distance
         if overlap > allowed:
             raise ValueError(
-                f"ball at ({x!r}, {y!r}) overlaps {describe(element, index)} by {overlap:.6g} m: "
+                f"ball at ({x!r}, {y!r}) overlaps {describe_element(element, index)} by {overlap:.6g} m: "
                 f"its centre must be at least {at_least(radius + scene.ball.radius, 6)} m away"
             )
         if overlap > 0.0 and distance > 0.0:
@@ -40,10 +40,10 @@ def place_clear(scene: Scene, cores: Mapping[int, Core], x: float, y: float, dis
     return x, y
 
 
-def gaps(scene: Scene, cores: Mapping[int, Core], x: float, y: float) -> Iterator[tuple[int, float]]:
+def element_gaps(scene: Scene, cores: Mapping[int, Core], x: float, y: float) -> Iterator[tuple[int, float]]:
     """For each element that bounces, but for one-way walls: its index and the gap [m] to a ball at (x, y)."""
     for index, element in enumerate(scene.elements):
-        nearest = _from_element(element, cores.get(index), x, y)
+        nearest = _distance_from_element(element, cores.get(index), x, y)
         if nearest is not None:
             yield index, nearest[2] - nearest[3] - scene.ball.radius
 
@@ -88,27 +88,29 @@ def _core_at_start(part: Part) -> Core:
     return (x - ax, y - ay), (x + ax, y + ay)
 
 
-def describe(element: Element, index: int) -> str:
+def describe_element(element: Element, index: int) -> str:
     """How error messages name an element."""
     return label(index, type(element).__name__.lower(), element.name)
 
 
-def _from_element(element: Element, core: Core | None, x: float, y: float) -> tuple[float, float, float, float] | None:
+def _distance_from_element(
+    element: Element, core: Core | None, x: float, y: float
+) -> tuple[float, float, float, float] | None:
     """Vector from the nearest point of an element's core to (x, y), its length, and the radius about the core [m]."""
     if isinstance(element, Paddle | Flipper | Bumper) and core is not None:
-        return *_from_segment(*core, x, y), element.radius
+        return *_distance_from_segment(*core, x, y), element.radius
     if isinstance(element, Wall) and core is not None:
-        return *_from_segment(*core, x, y), 0.0
+        return *_distance_from_segment(*core, x, y), 0.0
     if isinstance(element, Wall) and not element.one_way:
-        return *_from_segment(element.start, element.end, x, y), 0.0
+        return *_distance_from_segment(element.start, element.end, x, y), 0.0
     if isinstance(element, Bumper):
-        return *_from_segment(element.center, element.center, x, y), element.radius
+        return *_distance_from_segment(element.center, element.center, x, y), element.radius
     if isinstance(element, Arc):
-        return *_from_arc(element, x, y), 0.0
+        return *_distance_from_arc(element, x, y), 0.0
     return None
 
 
-def _from_arc(arc: Arc, x: float, y: float) -> tuple[float, float, float]:
+def _distance_from_arc(arc: Arc, x: float, y: float) -> tuple[float, float, float]:
     """Vector from the nearest point of an arc's line to (x, y), and its length."""
     dx, dy = x - arc.center[0], y - arc.center[1]
     distance = math.hypot(dx, dy)
@@ -120,10 +122,10 @@ def _from_arc(arc: Arc, x: float, y: float) -> tuple[float, float, float]:
         (arc.center[0] + arc.radius * math.cos(a), arc.center[1] + arc.radius * math.sin(a))
         for a in (arc.start_angle, arc.end_angle)
     )
-    return min((_from_segment(end, end, x, y) for end in ends), key=lambda vector: vector[2])
+    return min((_distance_from_segment(end, end, x, y) for end in ends), key=lambda vector: vector[2])
 
 
-def _from_segment(start: Point, end: Point, x: float, y: float) -> tuple[float, float, float]:
+def _distance_from_segment(start: Point, end: Point, x: float, y: float) -> tuple[float, float, float]:
     """Vector from the nearest point of a segment to (x, y), and its length."""
     wx, wy = end[0] - start[0], end[1] - start[1]
     dx, dy = x - start[0], y - start[1]

@@ -9,7 +9,7 @@ import struct
 
 import numpy as np
 
-from bounce_env.engine.memory.state import State, moving
+from bounce_env.engine.memory.state import State, moving_arrays
 from bounce_env.scene import Scene
 from bounce_env.wording import shown
 
@@ -19,16 +19,16 @@ _HEAD = struct.Struct("<16sI32s")
 _CHECKSUM = 32
 
 
-def to_bytes(scene: Scene, state: State) -> bytes:
+def snapshot_bytes(scene: Scene, state: State) -> bytes:
     """The state of a world of `scene`."""
-    head = _HEAD.pack(_MAGIC, VERSION, _digest(scene))
-    data = head + b"".join(array.tobytes() for array in moving(state))
+    head = _HEAD.pack(_MAGIC, VERSION, _scene_digest(scene))
+    data = head + b"".join(array.tobytes() for array in moving_arrays(state))
     return data + hashlib.sha256(data).digest()
 
 
-def from_bytes(data: bytes, scene: Scene, state: State) -> None:
+def restore_bytes(data: bytes, scene: Scene, state: State) -> None:
     """Write a snapshot into the state of a world of `scene`, or raise ValueError before anything of it is written."""
-    arrays = moving(state)
+    arrays = moving_arrays(state)
     size = _HEAD.size + sum(array.nbytes for array in arrays) + _CHECKSUM
     if not isinstance(data, bytes | bytearray | memoryview):
         raise ValueError(f"snapshot = {shown(data)}: must be bytes")
@@ -38,7 +38,7 @@ def from_bytes(data: bytes, scene: Scene, state: State) -> None:
     _, version, digest = _HEAD.unpack_from(data)
     if version != VERSION:
         raise ValueError(f"snapshot of version {version}: must be of version {VERSION}")
-    if digest != _digest(scene):
+    if digest != _scene_digest(scene):
         raise ValueError("snapshot of another scene: must be restored into a world of an equal one")
     if len(data) != size or hashlib.sha256(data[:-_CHECKSUM]).digest() != data[-_CHECKSUM:]:
         raise ValueError(f"snapshot of {len(data)} bytes: is truncated or changed, must be {size} bytes as written")
@@ -48,6 +48,6 @@ def from_bytes(data: bytes, scene: Scene, state: State) -> None:
         offset += array.nbytes
 
 
-def _digest(scene: Scene) -> bytes:
+def _scene_digest(scene: Scene) -> bytes:
     # The repr of a float has all its digits, and a scene is made of floats, names and flags.
     return hashlib.sha256(repr(scene).encode()).digest()

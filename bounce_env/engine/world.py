@@ -13,7 +13,7 @@ from bounce_env.engine.motion.parts import offset_at
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack, switch_ends
 from bounce_env.engine.placement import Core, cores_at_start, place_clear, separate
-from bounce_env.engine.snapshot import from_bytes, to_bytes
+from bounce_env.engine.snapshot import restore_bytes, snapshot_bytes
 from bounce_env.engine.world_kernels import (
     advance_to,
     begin_call,
@@ -135,7 +135,7 @@ class World:
             raise ValueError(f"command: {shown(name)} must be one of the scene's parts: {sorted(names)}{hint}")
         part = self._parts[names[name]][1]
         if isinstance(part, Wall):
-            command_wall(self._state, names[name], _velocities(name, value, self.scene.max_speed))
+            command_wall(self._state, names[name], _checked_end_velocities(name, value, self.scene.max_speed))
             return
         if isinstance(part, Flipper):
             if not isinstance(value, bool | np.bool_):
@@ -143,7 +143,7 @@ class World:
             velocity = part.up_speed if value else -part.down_speed
         else:
             fastest = part.max_speed if isinstance(part, Paddle) else part.speed
-            velocity = _speed(name, value, fastest)
+            velocity = _checked_part_speed(name, value, fastest)
         command_part(self._state, names[name], velocity)
 
     def enable(self, name: str, on: bool) -> None:
@@ -250,7 +250,7 @@ class World:
     def snapshot(self) -> bytes:
         """The full state as bytes; `restore` goes on from it, bit for bit."""
         self._check_started()
-        return to_bytes(self.scene, self._state)
+        return snapshot_bytes(self.scene, self._state)
 
     def restore(self, data: bytes) -> None:
         """Go on from a snapshot of a world of an equal scene.
@@ -258,7 +258,7 @@ class World:
         Raises ValueError where the bytes are no snapshot, truncated or changed, of another version or another scene;
         the world is then as before.
         """
-        from_bytes(data, self.scene, self._state)
+        restore_bytes(data, self.scene, self._state)
         self._switch_ends()
         self._started = True
 
@@ -325,7 +325,7 @@ def _cores_by_index(scene: Scene, cores: Floats) -> dict[int, Core]:
     return {index: ((x0, y0), (x1, y1)) for (index, _), (x0, y0, x1, y1) in rows}
 
 
-def _velocities(name: str, value: object, max_speed: float | None) -> Floats:
+def _checked_end_velocities(name: str, value: object, max_speed: float | None) -> Floats:
     """The velocities of a draggable wall's two ends, (2, 2)."""
     rows = numbers(value)
     limit = LARGEST if max_speed is None else max_speed
@@ -336,6 +336,6 @@ def _velocities(name: str, value: object, max_speed: float | None) -> Floats:
     return rows
 
 
-def _speed(name: str, value: Any, fastest: float) -> float:
+def _checked_part_speed(name: str, value: Any, fastest: float) -> float:
     allowed = f"finite and at most {fastest!r} m/s either way"
     return real(f"command {name!r}", value, -fastest, fastest, allowed)

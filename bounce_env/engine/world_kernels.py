@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from bounce_env.engine.compile.jit import borrow, kernel
 from bounce_env.engine.events.commands import command, command_ends
-from bounce_env.engine.events.crushing import free_all
+from bounce_env.engine.events.crushing import free_all_crushed
 from bounce_env.engine.events.flights import disturb, place
 from bounce_env.engine.events.loop import clear_hits, restart, resume, run
 from bounce_env.engine.events.part_stops import resume_part
@@ -52,7 +52,7 @@ def push_balls(state: State, dvx: float, dvy: float) -> None:
 def resolve_all(state: State) -> None:
     """Resolve every ball anew: an element has been switched on or off."""
     state = borrow(state)
-    free_all(state, 0)
+    free_all_crushed(state, 0)
     for k in range(state.balls.shape[1]):
         disturb(state, 0, k, 1.0, 0.0, 0.0)
 

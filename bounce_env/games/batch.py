@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from bounce_env.engine.compile.jit import interpreted
 from bounce_env.engine.memory.records import Array
-from bounce_env.engine.memory.state import State, moving
+from bounce_env.engine.memory.state import State, moving_arrays
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack
 from bounce_env.games.episode import (
@@ -144,7 +144,15 @@ class Batch:
     def _rows(self) -> tuple[Array, ...]:
         """All arrays with a row for each world that steps read."""
         results = (array for name, array in zip(Results._fields, self.results, strict=True) if name != "busy")
-        arrays = (*moving(self.state), *self._written, self.episodes, self.memory, self.held, self.counters, *results)
+        arrays = (
+            *moving_arrays(self.state),
+            *self._written,
+            self.episodes,
+            self.memory,
+            self.held,
+            self.counters,
+            *results,
+        )
         return tuple(array for array in arrays if array is not None)
 
     @cached_property

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.placement import describe
+from bounce_env.engine.placement import describe_element
 from bounce_env.scene import Scene, Sensor
 from bounce_env.scenecheck.crossings import crossings
 from bounce_env.scenecheck.follow import CRUSHES, DRAINED, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
@@ -168,7 +168,7 @@ def _start(survey: Survey, row: int) -> str:
 
 
 def _name(scene: Scene, index: int) -> str:
-    return describe(scene.elements[index], index)
+    return describe_element(scene.elements[index], index)
 
 
 def _counted(count: int, noun: str) -> str:

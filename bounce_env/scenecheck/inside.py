@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.placement import cores_at_start, gaps
+from bounce_env.engine.placement import cores_at_start, element_gaps
 from bounce_env.scene import Element, Scene, Sensor, Wall
 
 MOST_CELLS = 160
@@ -65,7 +65,7 @@ def _free(scene: Scene, left: float, bottom: float, cell: float, columns: int, l
     for i in range(columns):
         for j in range(lines):
             x, y = left + (i + 0.5) * cell, bottom + (j + 0.5) * cell
-            room[i, j] = all(gap >= margin for _, gap in gaps(closed, cores, x, y))
+            room[i, j] = all(gap >= margin for _, gap in element_gaps(closed, cores, x, y))
     return room
 
 

@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.placement import cores_at_start, gaps
+from bounce_env.engine.placement import cores_at_start, element_gaps
 from bounce_env.scene import Scene
 from bounce_env.scenecheck.inside import Inside
 
@@ -44,7 +44,7 @@ def _places(scene: Scene, inside: Inside | None, generator: np.random.Generator)
         for x, y in generator.uniform((left, bottom), (right, top), (AT_ONCE, 2)).tolist():
             missed += 1
             within = inside is None or inside.holds(x, y)
-            if within and all(gap >= 0.0 for _, gap in gaps(scene, cores, x, y)):
+            if within and all(gap >= 0.0 for _, gap in element_gaps(scene, cores, x, y)):
                 missed = 0
                 yield x, y
     raise NoRoomError(

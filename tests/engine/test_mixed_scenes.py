@@ -8,7 +8,7 @@ import pytest
 
 from bounce_env import Field, Scene
 from bounce_env.engine.memory.records import BUDGET, OK
-from bounce_env.engine.placement import gaps
+from bounce_env.engine.placement import element_gaps
 from bounce_env.engine.world_batch import WorldBatch
 from tests.conftest import soak_count
 from tests.engine.mixed_scenes import mixed_scene, start_in
@@ -54,7 +54,7 @@ def test_mixed_scenes(point: bool) -> None:
         assert np.isfinite(balls).all()
         assert (np.abs(balls[:, :2] - 0.5) <= 0.5 + 1e-9).all()
         for scene, ball in zip(scenes, balls.tolist(), strict=True):
-            assert min(gap for _, gap in gaps(scene, {}, ball[0], ball[1])) >= -1e-9, (scene, ball)
+            assert min(gap for _, gap in element_gaps(scene, {}, ball[0], ball[1])) >= -1e-9, (scene, ball)
         assert set(status) <= {OK, BUDGET}
         before = worlds.state.worlds["time_hi"].copy()
         worlds.advance(SECONDS, 1000)

@@ -7,7 +7,7 @@ import pytest
 
 from bounce_env import Scene, Wall
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, OK
-from bounce_env.engine.placement import gaps
+from bounce_env.engine.placement import element_gaps
 from bounce_env.engine.world import World
 from tests.conftest import soak_count
 from tests.engine.moving_scenes import MAX_SPEED, command_at_random, moving_scene, start
@@ -32,7 +32,7 @@ def overlap(world: World) -> float:
         for (index, _), (x0, y0, x1, y1) in zip(world.scene.parts, world.cores.tolist(), strict=True)
     }
     separate = np.hypot(*(place[:, None] - place[None, :]).T) + 10.0 * np.eye(len(place))
-    beside = min(gap for x, y in place.tolist() for _, gap in gaps(world.scene, cores, x, y))
+    beside = min(gap for x, y in place.tolist() for _, gap in element_gaps(world.scene, cores, x, y))
     return float(max((np.abs(place - 0.5) - (0.5 - radius)).max(), 2.0 * radius - separate.min(), -beside))
 
 

@@ -62,7 +62,7 @@ def unfolded(python_function: F) -> F:
 def kernel(python_function: F) -> F:
     """Compile an entry point and keep its binary on disk."""
     if numba.config.DISABLE_JIT:
-        return _without_warnings(python_function)
+        return _kernel_without_jit(python_function)
     compiled: Any = numba.njit(**POLICY, pipeline_class=KernelCompiler)(python_function)
     try:
         compiled._cache = KernelCache(compiled.py_func)
@@ -71,7 +71,7 @@ def kernel(python_function: F) -> F:
     return compiled
 
 
-def _without_warnings(python_function: F) -> F:
+def _kernel_without_jit(python_function: F) -> F:
     """Run a kernel as Python, where NumPy's scalars warn of what compiled code does silently: wrap around, overflow."""
 
     @functools.wraps(python_function)

@@ -5,7 +5,7 @@ A kick, or a part that has been stopped, may drive balls to and fro in a gap of 
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.squeeze import is_caught
-from bounce_env.engine.detect.pairs import weight_of
+from bounce_env.engine.detect.pairs import pair_weight
 from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED, FLYING, HELD, JAMMED, SETTLES
 from bounce_env.engine.memory.state import State
@@ -36,7 +36,7 @@ def count_meeting(world: Record, pair: Record, one: Record, other: Record, exten
     hits then the fastest speed is kept: what is left of it may be rounding.
     """
     t = since(hi, lo, world.meet_hi, world.meet_lo)
-    longest_way = (world.meet_speed + weight_of(one, other) * t) * t
+    longest_way = (world.meet_speed + pair_weight(one, other) * t) * t
     if not longest_way <= CORNER * ULPS_OF_LENGTH * extent or t < 0.0:
         world.meets, world.meet_speed = 0, 0.0
     world.meet_hi, world.meet_lo = hi, lo

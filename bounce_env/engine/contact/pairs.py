@@ -7,7 +7,7 @@ from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.jams import are_stuck, count_meeting, have_no_room, note_speed, stop
 from bounce_env.engine.contact.restitution import capped
 from bounce_env.engine.contact.squeeze import take_opposed
-from bounce_env.engine.detect.pairs import pair_noise, plan_pairs, weight_of
+from bounce_env.engine.detect.pairs import pair_noise, pair_weight, plan_pairs
 from bounce_env.engine.detect.schedule import resolve_next
 from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED
@@ -36,7 +36,7 @@ def collide(state: State, w: int, k: int, j: int, hi: float, lo: float, ledger: 
     other.x, other.y = other.x - apart * nx, other.y - apart * ny
     pair = state.pairs[w, k, j]
     count_meeting(world, pair, one, other, head.extent, hi, lo)
-    _exchange(state, w, k, j, nx, ny, distance, have_no_room(world, pair), ledger)
+    _exchange_speeds(state, w, k, j, nx, ny, distance, have_no_room(world, pair), ledger)
     if are_stuck(world, pair, one, other):
         stop(state, w, k, j, nx, ny, ledger)
         stop(state, w, j, k, -nx, -ny, ledger)
@@ -49,7 +49,7 @@ def collide(state: State, w: int, k: int, j: int, hi: float, lo: float, ledger: 
 
 
 @function
-def _exchange(
+def _exchange_speeds(
     state: State, w: int, k: int, j: int, nx: float, ny: float, distance: float, dead: bool, ledger: Table
 ) -> None:
     """Bounce ball `k` and ball `j` off each other, whose centres are `distance` [m] apart along (nx, ny).
@@ -61,7 +61,7 @@ def _exchange(
     closing = -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny)
     noise = pair_noise(one, other, flight_of(state, one), flight_of(state, other), head)
     noise = max(noise, ULPS_OF_SPEED * world.meet_speed)
-    least = _least_rebound(one, other, nx, ny, distance, head)
+    least = _least_pair_rebound(one, other, nx, ny, distance, head)
     if least == 0.0 and closing <= 0.0:
         return
     vx, vy, ux, uy = one.vx, one.vy, other.vx, other.vy
@@ -75,17 +75,17 @@ def _exchange(
     # A ball may be crushed against another one, too.
     take_opposed(one, head, nx, ny)
     take_opposed(other, head, -nx, -ny)
-    _cap(one, other, nx, ny, head.max_speed, world)
-    _cap(other, one, -nx, -ny, head.max_speed, world)
+    _cap_pair_speed(one, other, nx, ny, head.max_speed, world)
+    _cap_pair_speed(other, one, -nx, -ny, head.max_speed, world)
     world.bounces += 1
     append_contact(ledger, world, one, k, BOUNCE, Surface(head.elements + j, nx, ny, ux, uy), vx, vy)
     append_contact(ledger, world, other, j, BOUNCE, Surface(head.elements + k, -nx, -ny, vx, vy), ux, uy)
 
 
 @function
-def _least_rebound(one: Record, other: Record, nx: float, ny: float, distance: float, head: Record) -> float:
+def _least_pair_rebound(one: Record, other: Record, nx: float, ny: float, distance: float, head: Record) -> float:
     """The slowest [m/s] that one of two balls leaves the other one which it is pressed on; 0 where it is not."""
-    g = weight_of(one, other)
+    g = pair_weight(one, other)
     along = (one.vx - other.vx) * ny - (one.vy - other.vy) * nx
     turn = along * along / distance  # what it takes to keep to the other one
     if (one.ax - other.ax) * nx + (one.ay - other.ay) * ny + turn >= -PRESSING * (g + turn):
@@ -94,6 +94,6 @@ def _least_rebound(one: Record, other: Record, nx: float, ny: float, distance: f
 
 
 @function
-def _cap(ball: Record, other: Record, nx: float, ny: float, max_speed: float, world: Record) -> None:
+def _cap_pair_speed(ball: Record, other: Record, nx: float, ny: float, max_speed: float, world: Record) -> None:
     ball.vx, ball.vy, over = capped(ball.vx, ball.vy, nx, ny, other.vx, other.vy, max_speed)
     world.speed_capped += over

@@ -11,7 +11,7 @@ from bounce_env.engine.impact.line import leaves_end
 from bounce_env.engine.memory.lookup import is_off
 from bounce_env.engine.memory.records import CLOSED, NEXT_PART, OFF_END
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.dragged_wall import height_over
+from bounce_env.engine.motion.dragged_wall import height_over_wall
 from bounce_env.engine.motion.flight import Flight, bending, moved, seen_from, sped
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.motion.parts import is_dragged, moving_part
@@ -95,8 +95,8 @@ def _update_parts(state: State, w: int, k: int, start: Flight, t: float) -> None
         both = max(min(t, until), 0.0)
         x, y = moved(start.x, start.vx, ball.ax, t - both), moved(start.y, start.vy, ball.ay, t - both)
         vx, vy = sped(start.vx, ball.ax, t - both), sped(start.vy, ball.ay, t - both)
-        height0, rate0 = height_over(ends, until - both, x, y, vx, vy)
-        height, rate = height_over(ends, until, ball.x, ball.y, ball.vx, ball.vy)
+        height0, rate0 = height_over_wall(ends, until - both, x, y, vx, vy)
+        height, rate = height_over_wall(ends, until, ball.x, ball.y, ball.vx, ball.vy)
         slower = slow + ULPS_OF_SPEED * (abs(ends.vx0) + abs(ends.vy0) + abs(ends.vx1) + abs(ends.vy1))
         sides[w, k, m] = _side_after(height, rate, height0, rate0, both, slower, ball.tolerance, sides[w, k, m])
 
@@ -167,7 +167,7 @@ def update_crossing_sides(state: State, w: int, k: int) -> None:
     head = state.scenes[scene]
     _update_lines(ball, state.sensors, state.sensor_sides, head.sensors, w, k, scene)
     _update_lines(ball, state.field_edges, state.field_edge_sides, head.fields, w, k, scene)
-    _update_rings(state, w, k)
+    _update_circle_sensors(state, w, k)
 
 
 @function
@@ -183,7 +183,7 @@ def _update_lines(ball: Record, lines: Table, sides: Table, count: int, w: int, 
 
 
 @where("circle_sensors")
-def _update_rings(state: State, w: int, k: int) -> None:
+def _update_circle_sensors(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].circle_sensors):
         ring = state.circle_sensors[scene, i]

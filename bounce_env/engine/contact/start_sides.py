@@ -4,7 +4,7 @@ import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.dragged_wall import line_at
+from bounce_env.engine.motion.dragged_wall import wall_line_at
 from bounce_env.engine.motion.fields import gravity_of
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.motion.parts import is_dragged, moving_part
@@ -23,7 +23,7 @@ def set_initial_sides(state: State, w: int, k: int) -> None:
     _set_line_sides(ball, gravity, state.field_edges, state.field_edge_sides, head.fields, w, k, scene)
     _set_arc_sides(state, w, k)
     _set_part_sides(state, w, k)
-    _set_ring_sides(state, w, k)
+    _set_circle_sensor_sides(state, w, k)
 
 
 @function
@@ -37,7 +37,7 @@ def _set_line_sides(
         line = lines[scene, i]
         nx, ny = -line.uy, line.ux
         height = (ball.x - line.x) * nx + (ball.y - line.y) * ny
-        sides[w, k, i] = _side(ball, gravity, height, nx, ny)
+        sides[w, k, i] = _initial_side(ball, gravity, height, nx, ny)
 
 
 @where("part_sides")
@@ -47,9 +47,9 @@ def _set_part_sides(state: State, w: int, k: int) -> None:
         part = moving_part(state, w, m)
         state.part_sides[w, k, m] = 0
         if is_dragged(part):
-            x, y, ux, uy, _ = line_at(part.ends, since(ball.hi, ball.lo, part.motion.hi, part.motion.lo))
+            x, y, ux, uy, _ = wall_line_at(part.ends, since(ball.hi, ball.lo, part.motion.hi, part.motion.lo))
             height = (ball.y - y) * ux - (ball.x - x) * uy
-            state.part_sides[w, k, m] = _side(ball, gravity_of(state, scene), height, -uy, ux)
+            state.part_sides[w, k, m] = _initial_side(ball, gravity_of(state, scene), height, -uy, ux)
 
 
 @where("arc_sides")
@@ -57,35 +57,35 @@ def _set_arc_sides(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].arcs):
         arc = state.arcs[scene, i]
-        state.arc_sides[w, k, i] = _side_of_circle(ball, gravity_of(state, scene), arc.x, arc.y, arc.outer)
+        state.arc_sides[w, k, i] = _initial_side_of_circle(ball, gravity_of(state, scene), arc.x, arc.y, arc.outer)
 
 
 @where("circle_sensors")
-def _set_ring_sides(state: State, w: int, k: int) -> None:
+def _set_circle_sensor_sides(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].circle_sensors):
         ring = state.circle_sensors[scene, i]
-        state.circle_sensor_sides[w, k, i] = _side_of_circle(
+        state.circle_sensor_sides[w, k, i] = _initial_side_of_circle(
             ball, gravity_of(state, scene), ring.x, ring.y, ring.radius
         )
 
 
 @function
-def _side_of_circle(ball: Record, gravity: Vector, x: float, y: float, radius: float) -> int:
+def _initial_side_of_circle(ball: Record, gravity: Vector, x: float, y: float, radius: float) -> int:
     dx, dy = ball.x - x, ball.y - y
     distance = math.sqrt(dx * dx + dy * dy)
-    return _side(ball, gravity, distance - radius, dx / distance, dy / distance)
+    return _initial_side(ball, gravity, distance - radius, dx / distance, dy / distance)
 
 
 @function
-def _side(ball: Record, gravity: Vector, height: float, nx: float, ny: float) -> int:
+def _initial_side(ball: Record, gravity: Vector, height: float, nx: float, ny: float) -> int:
     if abs(height) <= ball.tolerance:
-        height = _lean(ball, gravity, nx, ny)
+        height = _initial_lean(ball, gravity, nx, ny)
     return 1 if height >= 0.0 else -1
 
 
 @function
-def _lean(ball: Record, gravity: Vector, nx: float, ny: float) -> float:
+def _initial_lean(ball: Record, gravity: Vector, nx: float, ny: float) -> float:
     """To which side of a line that it is on the ball moves, or else is pulled from; 0 where it does neither.
 
     Less than rounding is nothing: a ball sent along a turned wall is on the left of it, as along any other.

@@ -8,7 +8,7 @@ import math
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.restitution import is_standing
 from bounce_env.engine.detect.surfaces import line_of
-from bounce_env.engine.impact.arc import in_span
+from bounce_env.engine.impact.arc import is_in_span
 from bounce_env.engine.impact.line import is_beside
 from bounce_env.engine.memory.lookup import is_off, is_one_way, side_of_part, side_on
 from bounce_env.engine.memory.state import State
@@ -63,7 +63,7 @@ def keep_outside(ball: Record, touches: Table, w: int) -> None:
 
 
 @function
-def _add(
+def _add_touch(
     state: State, w: int, k: int, nx: float, ny: float, gap: float, curvature: float, element: int, face: int
 ) -> bool:
     """Add a standing surface to the list, if there is room for it; returns whether there was."""
@@ -102,7 +102,7 @@ def _touch_faces(state: State, w: int, k: int) -> None:
         if is_one_way(state, scene, i) and (facing < 0.0 or height < face.offset_radius - ball.tolerance):
             continue
         gap = facing * height - face.offset_radius
-        if _add(state, w, k, -facing * face.uy, facing * face.ux, gap, 0.0, face.element, i):
+        if _add_touch(state, w, k, -facing * face.uy, facing * face.ux, gap, 0.0, face.element, i):
             along = dx * face.ux + dy * face.uy
             touch = state.touches[w, ball.touched - 1]
             touch.along = along if facing > 0.0 else face.length - along
@@ -121,7 +121,7 @@ def _touch_circles(state: State, w: int, k: int) -> None:
             continue
         distance = math.sqrt(square)
         gap = distance - circle.offset_radius
-        _add(state, w, k, dx / distance, dy / distance, gap, 1.0 / circle.offset_radius, circle.element, -1)
+        _add_touch(state, w, k, dx / distance, dy / distance, gap, 1.0 / circle.offset_radius, circle.element, -1)
 
 
 @where("arcs")
@@ -136,13 +136,13 @@ def _touch_arcs(state: State, w: int, k: int) -> None:
         side = side_on(state.arc_sides, w, k, i)
         if side != 0:
             outside, inside = outside and side > 0, inside and side < 0
-        if not (outside or inside) or not in_span(arc, dx, dy, ball.tolerance) or is_off(state, w, arc.element):
+        if not (outside or inside) or not is_in_span(arc, dx, dy, ball.tolerance) or is_off(state, w, arc.element):
             continue
         facing = 1.0 if outside else -1.0
         curvature = 1.0 / arc.outer if outside else -1.0 / arc.inner
         nx, ny = facing * (dx / distance), facing * (dy / distance)
         gap = distance - arc.outer if outside else arc.inner - distance
-        _add(state, w, k, nx, ny, gap, curvature, arc.element, -1)
+        _add_touch(state, w, k, nx, ny, gap, curvature, arc.element, -1)
 
 
 @where("parts")
@@ -179,7 +179,7 @@ def _touch_part(
         if not straight and (side != 0 or core.back + ball.tolerance < nearest < core.front - ball.tolerance):
             continue
         curvature = 0.0 if straight else 1.0 / shape.offset_radius
-        if not _add(state, w, k, nx, ny, distance - shape.offset_radius, curvature, shape.element, -1):
+        if not _add_touch(state, w, k, nx, ny, distance - shape.offset_radius, curvature, shape.element, -1):
             return False
         touch = state.touches[w, ball.touched - 1]
         touch.part, touch.ux, touch.uy, touch.least = m, vx, vy, least

@@ -28,11 +28,11 @@ def plan_pairs(state: State, w: int, k: int) -> None:
     for j in range(state.balls.shape[1]):
         if j != k:
             pair = state.pairs[w, max(j, k), min(j, k)]
-            pair.hi, pair.lo = _meeting(state, w, max(j, k), min(j, k))
+            pair.hi, pair.lo = _meeting_of_pair(state, w, max(j, k), min(j, k))
 
 
 @function
-def _meeting(state: State, w: int, k: int, j: int) -> tuple[float, float]:
+def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float]:
     one, other = state.balls[w, k], state.balls[w, j]
     if OUT in (one.status, other.status):
         return math.inf, 0.0
@@ -45,20 +45,23 @@ def _meeting(state: State, w: int, k: int, j: int) -> tuple[float, float]:
     head = state.scenes[state.worlds[w].scene]
     tolerance = max(touch_tolerance(of_one, head.extent, s), touch_tolerance(of_other, head.extent, t))
     of_one, of_other = flight_after(of_one, s), flight_after(of_other, t)
-    seen = _seen_from_other(of_one, of_other)
+    seen = _seen_from_other_ball(of_one, of_other)
     offset_radius, noise = 2.0 * head.ball_radius, pair_noise(one, other, of_one, of_other, head)
     closing = -(seen.x * seen.vx + seen.y * seen.vy) / offset_radius
     if seen.x * seen.x + seen.y * seen.y <= (offset_radius + tolerance) * (offset_radius + tolerance):
         if abs(closing) <= noise:
             # They neither close on each other nor come apart by more than rounding.
-            off, turn = _drawn_off(seen, offset_radius), (seen.vx * seen.vx + seen.vy * seen.vy) / offset_radius
+            off, turn = (
+                _drawn_off_other_ball(seen, offset_radius),
+                (seen.vx * seen.vx + seen.vy * seen.vy) / offset_radius,
+            )
             if off >= 0.0:
                 return math.inf, 0.0
             # Of balls that are a little deep in each other a search would find no hit. Pressed for sure, though one
             # moves along the other: `_least_rebound` is to find so, too, or it would be told of for ever.
-            if off + turn < -2.0 * PRESSING * (weight_of(one, other) + turn):
+            if off + turn < -2.0 * PRESSING * (pair_weight(one, other) + turn):
                 return hi, lo
-        elif closing > 0.0 and may_wait(state.worlds[w], closing, hi, lo):
+        elif closing > 0.0 and may_pair_wait(state.worlds[w], closing, hi, lo):
             after = CORNER * ULPS_OF_LENGTH * head.extent / closing
             return later(hi, lo, after) if after <= horizon else (math.inf, 0.0)
     after = circle_time(seen, offset_radius, tolerance, horizon)
@@ -67,19 +70,19 @@ def _meeting(state: State, w: int, k: int, j: int) -> tuple[float, float]:
     return later(hi, lo, after)
 
 
-def _seen_coasting(one: Flight, other: Flight) -> Flight:
+def _seen_from_other_ball_coasting(one: Flight, other: Flight) -> Flight:
     return Flight(one.x - other.x, one.y - other.y, one.vx - other.vx, one.vy - other.vy, None, None)
 
 
-@where("ax", otherwise=_seen_coasting)
-def _seen_from_other(one: Flight, other: Flight) -> Flight:
+@where("ax", otherwise=_seen_from_other_ball_coasting)
+def _seen_from_other_ball(one: Flight, other: Flight) -> Flight:
     """The flight of one ball as seen from another one."""
     ax, ay = one.ax - other.ax, one.ay - other.ay
     return Flight(one.x - other.x, one.y - other.y, one.vx - other.vx, one.vy - other.vy, ax, ay)
 
 
 @where("ax", otherwise=0.0)
-def _drawn_off(seen: Flight, offset_radius: float) -> float:
+def _drawn_off_other_ball(seen: Flight, offset_radius: float) -> float:
     """The acceleration [m/s^2] that draws a ball off another one at the origin that it touches; < 0: onto it."""
     return (seen.x * seen.ax + seen.y * seen.ay) / offset_radius
 
@@ -88,7 +91,7 @@ def _drawn_off(seen: Flight, offset_radius: float) -> float:
 def pair_noise(one: Record, other: Record, of_one: Flight, of_other: Flight, head: Record) -> float:
     """Return the speed [m/s] below which closing balls do not hit: rounding, or next to nothing under gravity."""
     speeds = abs(of_one.vx) + abs(of_one.vy) + abs(of_other.vx) + abs(of_other.vy)
-    return ULPS_OF_SPEED * (speeds + math.sqrt(weight_of(one, other) * head.ball_radius))
+    return ULPS_OF_SPEED * (speeds + math.sqrt(pair_weight(one, other) * head.ball_radius))
 
 
 @where("pairs", otherwise=(math.inf, 0.0, -1, -1))
@@ -104,7 +107,7 @@ def first_pair(state: State, w: int, until_hi: float, until_lo: float) -> tuple[
 
 
 @function
-def may_wait(world: Record, closing: float, hi: float, lo: float) -> bool:
+def may_pair_wait(world: Record, closing: float, hi: float, lo: float) -> bool:
     """Return whether a hit of touching balls at the instant (hi, lo) may wait until they are as deep as a corner's gap.
 
     It may where it is so slow, `closing` [m/s], that it is left of many faster ones at this instant.
@@ -114,6 +117,6 @@ def may_wait(world: Record, closing: float, hi: float, lo: float) -> bool:
 
 
 @function
-def weight_of(one: Record, other: Record) -> float:
+def pair_weight(one: Record, other: Record) -> float:
     """Return the larger of the accelerations [m/s^2] that two balls are under."""
     return max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))

@@ -15,7 +15,7 @@ from bounce_env.engine.motion.flight import (
     acceleration_along,
     flight_after,
     seen_from,
-    slowed_by,
+    seen_from_moving,
     swept,
     touch_tolerance,
 )
@@ -132,7 +132,7 @@ def meet_part(
         after = rotating_capsule_time(seen, core, shape.offset_radius, spin, tolerance, horizon)
     else:
         if part.turn == 0:
-            seen = slowed_by(seen, motion.velocity * core.ux, motion.velocity * core.uy)
+            seen = seen_from_moving(seen, motion.velocity * core.ux, motion.velocity * core.uy)
         after = capsule_time(seen, core, shape.offset_radius, tolerance, horizon)
     if after == math.inf:
         return math.inf, 0.0
@@ -143,7 +143,7 @@ def meet_part(
 def _meet_wall(part: MovingPart, flight: Flight, core: Core, side: int, tolerance: float, horizon: float) -> float:
     """Hit of a dragged wall, seen from where its start is now: a duration [s], or inf."""
     ends, offset_radius = part.ends, part.shape.offset_radius
-    seen = slowed_by(flight, ends.vx0, ends.vy0)
+    seen = seen_from_moving(flight, ends.vx0, ends.vy0)
     ex, ey = ends.vx1 - ends.vx0, ends.vy1 - ends.vy0
     if ex != 0.0 or ey != 0.0:
         dx, dy = core.front * core.ux, core.front * core.uy

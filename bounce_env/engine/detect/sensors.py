@@ -27,55 +27,55 @@ def next_crossing(state: State, w: int, k: int, flight: Flight, last: Crossing) 
     Crossings at one instant come in the order of kinds (lines, circles, borders of fields), and in that of elements.
     """
     best = Crossing(math.inf, LINE_SENSOR, -1)
-    best = _first_line(state, w, k, flight, last, best)
-    best = _first_circle(state, w, k, flight, last, best)
-    return _first_edge(state, w, k, flight, last, best)
+    best = _first_line_crossing(state, w, k, flight, last, best)
+    best = _first_circle_entry(state, w, k, flight, last, best)
+    return _first_field_border(state, w, k, flight, last, best)
 
 
 @function
-def _follows(t: float, kind: int, index: int, last: Crossing) -> bool:
+def _follows_crossing(t: float, kind: int, index: int, last: Crossing) -> bool:
     return t > last.after or (t == last.after and (kind > last.kind or (kind == last.kind and index > last.row)))
 
 
-def _nothing_earlier(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
+def _no_earlier_crossing(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
     return best
 
 
-@where("sensors", otherwise=_nothing_earlier)
-def _first_line(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
+@where("sensors", otherwise=_no_earlier_crossing)
+def _first_line_crossing(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].sensors):
         sensor, side = state.sensors[scene, i], state.sensor_sides[w, k, i]
         seen, line = seen_from(flight, sensor.x, sensor.y), Line(sensor.ux, sensor.uy, sensor.length, 0.0)
         for facing in (1.0, -1.0):
             t = facing_time(seen, line, facing, side, ball.tolerance, ball.end_after)
-            if t < best.after and _follows(t, LINE_SENSOR, i, last):
+            if t < best.after and _follows_crossing(t, LINE_SENSOR, i, last):
                 best = Crossing(t, LINE_SENSOR, i)
     return best
 
 
-@where("circle_sensors", otherwise=_nothing_earlier)
-def _first_circle(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
+@where("circle_sensors", otherwise=_no_earlier_crossing)
+def _first_circle_entry(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].circle_sensors):
         ring, outside = state.circle_sensors[scene, i], state.circle_sensor_sides[w, k, i] > 0
         # A ball may enter a circle twice in one flight: what came before is no answer.
-        tie = _follows(last.after, CIRCLE_ENTRY, i, last)
+        tie = _follows_crossing(last.after, CIRCLE_ENTRY, i, last)
         after = last.after - abs(last.after) * ULP if tie else last.after
         t = entry_time(seen_from(flight, ring.x, ring.y), ring.radius, outside, ball.tolerance, after, ball.end_after)
-        if t < best.after and _follows(t, CIRCLE_ENTRY, i, last):
+        if t < best.after and _follows_crossing(t, CIRCLE_ENTRY, i, last):
             best = Crossing(t, CIRCLE_ENTRY, i)
     return best
 
 
-@where("field_edges", otherwise=_nothing_earlier)
-def _first_edge(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
+@where("field_edges", otherwise=_no_earlier_crossing)
+def _first_field_border(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].fields):
         edge, side = state.field_edges[scene, i], state.field_edge_sides[w, k, i]
         seen, line = seen_from(flight, edge.x, edge.y), Line(edge.ux, edge.uy, math.inf, 0.0)
         for facing in (1.0, -1.0):
             t = line_time(seen, line, facing, side, ball.tolerance)
-            if t <= ball.end_after and t < best.after and _follows(t, FIELD_BORDER, i, last):
+            if t <= ball.end_after and t < best.after and _follows_crossing(t, FIELD_BORDER, i, last):
                 best = Crossing(t, FIELD_BORDER, i)
     return best

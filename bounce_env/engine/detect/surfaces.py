@@ -153,11 +153,11 @@ def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float
     return best, index
 
 
-def _no_end(state: State, w: int, k: int, flight: Flight, horizon: float) -> tuple[float, int]:
+def _no_face_end(state: State, w: int, k: int, flight: Flight, horizon: float) -> tuple[float, int]:
     return horizon, -1
 
 
-@where("faces", otherwise=_no_end)
+@where("faces", otherwise=_no_face_end)
 def first_end(state: State, w: int, k: int, flight: Flight, horizon: float) -> tuple[float, int]:
     """Return the earliest end before `horizon` [s] of a wall that the ball slides on: (duration, face).
 
@@ -171,7 +171,7 @@ def first_end(state: State, w: int, k: int, flight: Flight, horizon: float) -> t
     return _first_end_of_point(state, w, k, flight, horizon)
 
 
-@where("face_sides", otherwise=_no_end)
+@where("face_sides", otherwise=_no_face_end)
 def _first_end_of_point(state: State, w: int, k: int, flight: Flight, horizon: float) -> tuple[float, int]:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     best, index = horizon, -1

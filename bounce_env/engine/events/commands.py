@@ -3,7 +3,7 @@
 from bounce_env.engine.compile.jit import routine, where
 from bounce_env.engine.events.crushing import hold_or_free_crushed
 from bounce_env.engine.events.flights import apply_drag
-from bounce_env.engine.events.part_stops import end_rides, replan_part, resume_part, set_off
+from bounce_env.engine.events.part_stops import end_rides, replan_part, resume_part, set_part_off
 from bounce_env.engine.memory.state import State
 
 
@@ -13,7 +13,7 @@ def command(state: State, w: int, m: int, velocity: float) -> None:
     apply_drag(state, w)
     if velocity != state.motions[w, m].command:
         state.motions[w, m].command = velocity
-        _move_otherwise(state, w, m)
+        _obey_command(state, w, m)
 
 
 @where("ends")
@@ -23,11 +23,11 @@ def command_ends(state: State, w: int, m: int, start: tuple[float, float], end: 
     apply_drag(state, w)
     if vx0 != ends.cx0 or vy0 != ends.cy0 or vx1 != ends.cx1 or vy1 != ends.cy1:
         ends.cx0, ends.cy0, ends.cx1, ends.cy1 = vx0, vy0, vx1, vy1
-        _move_otherwise(state, w, m)
+        _obey_command(state, w, m)
 
 
 @routine
-def _move_otherwise(state: State, w: int, m: int) -> None:
+def _obey_command(state: State, w: int, m: int) -> None:
     """Let part `m` move as it has now been commanded to."""
     end_rides(state, w, m)
     resume_part(state, w, m)
@@ -46,7 +46,7 @@ def command_unwatched(state: State, w: int, m: int, velocity: float) -> bool:
     for k in range(state.zones.shape[1]):
         if state.zones[w, k, m].inside:
             return False
-    set_off(motion, state.parts[world.scene, m], world, velocity)
+    set_part_off(motion, state.parts[world.scene, m], world, velocity)
     return True
 
 

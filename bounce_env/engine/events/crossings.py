@@ -18,11 +18,11 @@ def cross(state: State, w: int, k: int, ledger: Table) -> None:
     """Process a crossing. The flight goes on as if there were nothing, unless it is a drain or changes the pull."""
     kind = state.balls[w, k].sensor_kind
     if kind == FIELD_BORDER:
-        _cross_edge(state, w, k)
+        _cross_field_edge(state, w, k)
     elif kind == LINE_SENSOR:
         _cross_line(state, w, k, ledger)
     else:
-        _enter_ring(state, w, k, ledger)
+        _enter_circle_sensor(state, w, k, ledger)
 
 
 @where("sensors")
@@ -33,22 +33,22 @@ def _cross_line(state: State, w: int, k: int, ledger: Table) -> None:
     vx, vy = velocity_after(flight_of(state, ball), ball.sensor_after)
     facing = 1.0 if vy * sensor.ux - vx * sensor.uy < 0.0 else -1.0
     surface = Surface(sensor.element, -facing * sensor.uy, facing * sensor.ux, 0.0, 0.0)
-    _report(state, w, k, sensor.drain, surface, ledger)
+    _report_crossing(state, w, k, sensor.drain, surface, ledger)
 
 
 @where("circle_sensors")
-def _enter_ring(state: State, w: int, k: int, ledger: Table) -> None:
+def _enter_circle_sensor(state: State, w: int, k: int, ledger: Table) -> None:
     ball = state.balls[w, k]
     ring = state.circle_sensors[state.worlds[w].scene, ball.sensor_index]
     state.circle_sensor_sides[w, k, ball.sensor_index] = -1
     x, y = place_after(flight_of(state, ball), ball.sensor_after)
     dx, dy = x - ring.x, y - ring.y
     distance = math.sqrt(dx * dx + dy * dy)
-    _report(state, w, k, ring.drain, Surface(ring.element, dx / distance, dy / distance, 0.0, 0.0), ledger)
+    _report_crossing(state, w, k, ring.drain, Surface(ring.element, dx / distance, dy / distance, 0.0, 0.0), ledger)
 
 
 @routine
-def _report(state: State, w: int, k: int, drain: int, surface: Surface, ledger: Table) -> None:
+def _report_crossing(state: State, w: int, k: int, drain: int, surface: Surface, ledger: Table) -> None:
     """Count and log a crossing, the surface's normal towards where the ball came from, and plan what follows it."""
     ball = state.balls[w, k]
     flight, after = flight_of(state, ball), ball.sensor_after
@@ -66,7 +66,7 @@ def _report(state: State, w: int, k: int, drain: int, surface: Surface, ledger: 
 
 
 @where("field_edges")
-def _cross_edge(state: State, w: int, k: int) -> None:
+def _cross_field_edge(state: State, w: int, k: int) -> None:
     ball = state.balls[w, k]
     after, index = ball.sensor_after, ball.sensor_index
     state.field_edge_sides[w, k, index] = -state.field_edge_sides[w, k, index]

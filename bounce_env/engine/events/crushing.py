@@ -11,7 +11,7 @@ from bounce_env.engine.events.flights import disturb
 from bounce_env.engine.events.part_stops import (
     block_part,
     end_rides,
-    hold_still,
+    hold_part_still,
     replan_part,
     resume_part,
     turns_back,
@@ -59,13 +59,13 @@ def hold_or_free_crushed(state: State, w: int, m: int) -> None:
         ball = state.balls[w, k]
         if ball.status != CRUSHED:
             continue
-        gap, closing = _approach(ball, part, side_of_part(state, w, k, m), world.time_hi, world.time_lo)
+        gap, closing = _approach_to_crushed(ball, part, side_of_part(state, w, k, m), world.time_hi, world.time_lo)
         if gap > 2.0 * CLEARANCE * state.scenes[world.scene].extent:
             continue
         if closing > 0.0:
-            hold_still(part)
+            hold_part_still(part)
         elif closing < 0.0:
-            _free(state, w, k, m)
+            _free_crushed(state, w, k, m)
 
 
 @where("parts", inline=False)
@@ -76,7 +76,7 @@ def meet_crushed(state: State, w: int, k: int, m: int, ledger: Table) -> None:
     """
     ball, world = state.balls[w, k], state.worlds[w]
     side = side_of_part(state, w, k, m)
-    _, closing = _approach(ball, moving_part(state, w, m), side, world.time_hi, world.time_lo)
+    _, closing = _approach_to_crushed(ball, moving_part(state, w, m), side, world.time_hi, world.time_lo)
     if closing > 0.0 or (ball.hi == world.time_hi and ball.lo == world.time_lo):
         block_part(state, w, m, ledger)
     else:
@@ -85,7 +85,7 @@ def meet_crushed(state: State, w: int, k: int, m: int, ledger: Table) -> None:
 
 
 @function
-def _approach(ball: Record, part: MovingPart, side: int, hi: float, lo: float) -> tuple[float, float]:
+def _approach_to_crushed(ball: Record, part: MovingPart, side: int, hi: float, lo: float) -> tuple[float, float]:
     """How far [m] a part is from a crushed ball at an instant, and how fast [m/s] it closes; 0 within rounding."""
     core = core_at(part, hi, lo)
     nx, ny, distance, nearest = on_capsule(core, ball.x, ball.y, side, ball.tolerance)
@@ -95,7 +95,7 @@ def _approach(ball: Record, part: MovingPart, side: int, hi: float, lo: float) -
 
 
 @where("parts")
-def _free(state: State, w: int, k: int, m: int) -> None:
+def _free_crushed(state: State, w: int, k: int, m: int) -> None:
     """Let a crushed ball go on, and what crushed it, unless that is part `m`, which has been told where to."""
     ball = state.balls[w, k]
     crusher = ball.struck
@@ -108,8 +108,8 @@ def _free(state: State, w: int, k: int, m: int) -> None:
 
 
 @where("parts")
-def free_all(state: State, w: int) -> None:
+def free_all_crushed(state: State, w: int) -> None:
     """Let all crushed balls go on: something else than a command may have opened their gaps."""
     for k in range(state.balls.shape[1]):
         if state.balls[w, k].status == CRUSHED:
-            _free(state, w, k, -1)
+            _free_crushed(state, w, k, -1)

@@ -45,7 +45,7 @@ def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int,
     """
     world = state.worlds[w]
     while True:
-        hi, lo, what, i, j = _next(state, w, until_hi, until_lo)
+        hi, lo, what, i, j = _next_event(state, w, until_hi, until_lo)
         if what == NOTHING:
             world.time_hi, world.time_lo = until_hi, until_lo
             return DONE
@@ -66,7 +66,7 @@ def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int,
 
 
 @function
-def _next(state: State, w: int, until_hi: float, until_lo: float) -> tuple[float, float, int, int, int]:
+def _next_event(state: State, w: int, until_hi: float, until_lo: float) -> tuple[float, float, int, int, int]:
     hi, lo, what, i, j = math.inf, 0.0, NOTHING, -1, -1
     for k in range(state.balls.shape[1]):
         b = state.balls[w, k]
@@ -147,13 +147,13 @@ def _ball_event(state: State, w: int, k: int, ledger: Table) -> int:
         return 1
     planning = ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE
     bounces = state.worlds[w].bounces
-    _hit(state, w, k, ledger)
+    _ball_hits(state, w, k, ledger)
     # A ball that is only planned anew has met nothing.
     return 0 if planning and state.worlds[w].bounces == bounces and ball.contact == FLYING else 1
 
 
 @function
-def _hit(state: State, w: int, k: int, ledger: Table) -> None:
+def _ball_hits(state: State, w: int, k: int, ledger: Table) -> None:
     ball = state.balls[w, k]
     # A kept hit is a duration from the flight's start, so that its own rounding is all there is.
     t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)

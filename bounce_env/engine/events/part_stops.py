@@ -25,7 +25,7 @@ from bounce_env.engine.tolerances import CLEARANCE
 
 
 @function
-def set_off(motion: Record, shape: Record, world: Record, velocity: float) -> None:
+def set_part_off(motion: Record, shape: Record, world: Record, velocity: float) -> None:
     """Start a commanded motion from the part's place: against a stop it stands, or turns back if it is a shuttle."""
     motion.offset = kept_offset(motion, shape, world.time_hi, world.time_lo)
     motion.hi, motion.lo = world.time_hi, world.time_lo
@@ -46,7 +46,7 @@ def resume_part(state: State, w: int, m: int) -> None:
     if is_dragged(part):
         _set_wall_off(state, w, m)
     else:
-        set_off(part.motion, part.shape, world, part.motion.command)
+        set_part_off(part.motion, part.shape, world, part.motion.command)
 
 
 @where("ends")
@@ -56,7 +56,7 @@ def _set_wall_off(state: State, w: int, m: int) -> None:
 
 
 @function
-def hold_still(part: MovingPart) -> None:
+def hold_part_still(part: MovingPart) -> None:
     """Stop a part where it is."""
     part.motion.velocity = 0.0
     _hold_ends(part)
@@ -113,7 +113,7 @@ def stop_part(state: State, w: int, m: int, ledger: Table) -> None:
     """Let part `m` come to a stop now: it stands there, or turns back if it is a shuttle."""
     motion, shape = state.motions[w, m], state.parts[state.worlds[w].scene, m]
     hi, lo = stop_instant(motion, shape)
-    _halt(state, w, m, shape.span if motion.velocity > 0.0 else 0.0, False, hi, lo, ledger)
+    _halt_part(state, w, m, shape.span if motion.velocity > 0.0 else 0.0, False, hi, lo, ledger)
 
 
 @where("parts", inline=False)
@@ -121,11 +121,11 @@ def block_part(state: State, w: int, m: int, ledger: Table) -> None:
     """Let part `m` stop now, against a ball that is crushed."""
     world = state.worlds[w]
     hi, lo = world.time_hi, world.time_lo
-    _halt(state, w, m, kept_offset(state.motions[w, m], state.parts[world.scene, m], hi, lo), True, hi, lo, ledger)
+    _halt_part(state, w, m, kept_offset(state.motions[w, m], state.parts[world.scene, m], hi, lo), True, hi, lo, ledger)
 
 
 @function
-def _halt(state: State, w: int, m: int, offset: float, blocked: bool, hi: float, lo: float, ledger: Table) -> None:
+def _halt_part(state: State, w: int, m: int, offset: float, blocked: bool, hi: float, lo: float, ledger: Table) -> None:
     """Let part `m` stop at the instant (hi, lo): where it is if it is `blocked`, or as it comes to a stop."""
     end_rides(state, w, m)
     _release_caught(state, w, m)

@@ -11,8 +11,8 @@ from bounce_env.engine.compile.jit import Record, function, routine, where
 from bounce_env.engine.impact.quartic import (
     distance_polynomial,
     monotone_borders,
+    quartic_value,
     root_between,
-    value,
     without_root_at_zero,
 )
 from bounce_env.engine.memory.records import CLOSED, MINOR
@@ -35,7 +35,7 @@ class Circle(NamedTuple):
 
 
 @function
-def in_span(arc: Any, dx: float, dy: float, tolerance: float) -> bool:
+def is_in_span(arc: Any, dx: float, dy: float, tolerance: float) -> bool:
     """Return whether the point at (dx, dy) [m] from the centre lies beside the arc, ends included within a tolerance.
 
     `arc` is an ARC, or None for a circle that is no arc.
@@ -87,13 +87,19 @@ def crossing_time(
     touching = abs(gap) <= tolerance
     approach = circle.sense * (flight.x * flight.vx + flight.y * flight.vy)
     slow = slow_on_circle(flight, circle.offset_radius, tolerance) * distance
-    if touching and armed and approach > slow and after < 0.0 and in_span(arc, flight.x, flight.y, tolerance):
+    if touching and armed and approach > slow and after < 0.0 and is_in_span(arc, flight.x, flight.y, tolerance):
         wait = _until_nearest(flight, circle.sense, tolerance)
         return wait if wait > 0.0 else max(gap, 0.0) * distance / approach
     still = touching and abs(approach) <= slow
-    if still and armed and after < 0.0 and _sinks(flight, circle.sense) and in_span(arc, flight.x, flight.y, tolerance):
+    if (
+        still
+        and armed
+        and after < 0.0
+        and _sinks_into_arc(flight, circle.sense)
+        and is_in_span(arc, flight.x, flight.y, tolerance)
+    ):
         return 0.0
-    return _crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
+    return _arc_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
 
 
 @function
@@ -111,16 +117,16 @@ def _until_nearest(flight: Flight, sense: float, tolerance: float) -> float:
 def _touches_at(flight: Flight, arc: Any, offset_radius: float, t: float, tolerance: float) -> bool:
     """Whether a ball touches after `t` seconds, beside the arc."""
     x, y = place_after(flight, t)
-    return abs(math.sqrt(x * x + y * y) - offset_radius) <= tolerance and in_span(arc, x, y, tolerance)
+    return abs(math.sqrt(x * x + y * y) - offset_radius) <= tolerance and is_in_span(arc, x, y, tolerance)
 
 
 @function
-def _sinks_coasting(flight: Flight, sense: float) -> bool:
+def _sinks_into_arc_coasting(flight: Flight, sense: float) -> bool:
     return sense > 0.0 and flight.vx * flight.vx + flight.vy * flight.vy > 0.0
 
 
-@where("ax", otherwise=_sinks_coasting)
-def _sinks(flight: Flight, sense: float) -> bool:
+@where("ax", otherwise=_sinks_into_arc_coasting)
+def _sinks_into_arc(flight: Flight, sense: float) -> bool:
     """Whether a point that moves along the circle is about to cross it: the second derivative of its distance tells."""
     square = flight.vx * flight.vx + flight.vy * flight.vy
     dx, dy = flight.x * flight.ax, flight.y * flight.ay
@@ -128,7 +134,7 @@ def _sinks(flight: Flight, sense: float) -> bool:
 
 
 @function
-def _straight(
+def _straight_crossing(
     flight: Flight,
     arc: Any,
     circle: Circle,
@@ -160,13 +166,13 @@ def _straight(
     if touching and t * square <= root:  # the root at the start, of which the touch has been told
         return math.inf
     t += _until_nearest(Flight(x + vx * t, y + vy * t, vx, vy, None, None), circle.sense, tolerance)
-    if t < 0.0 or t <= after or t > horizon or not in_span(arc, x + vx * t, y + vy * t, tolerance):
+    if t < 0.0 or t <= after or t > horizon or not is_in_span(arc, x + vx * t, y + vy * t, tolerance):
         return math.inf
     return t
 
 
-@where("ax", otherwise=_straight)
-def _crossing(
+@where("ax", otherwise=_straight_crossing)
+def _arc_crossing(
     flight: Flight,
     arc: Any,
     circle: Circle,
@@ -177,12 +183,12 @@ def _crossing(
     horizon: float,
 ) -> float:
     if abs(flight.ax) + abs(flight.ay) < WEIGHTLESS:
-        return _straight(flight, arc, circle, touching, still, tolerance, after, horizon)
-    return _curved(flight, arc, circle, touching, still, tolerance, after, horizon)
+        return _straight_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
+    return _curved_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
 
 
 @function
-def _curved(
+def _curved_crossing(
     flight: Flight,
     arc: Any,
     circle: Circle,
@@ -203,7 +209,7 @@ def _curved(
     borders = monotone_borders(c, horizon)
     for i in range(4):
         start, end = borders[i], borders[i + 1]
-        if not (sense * value(c, start) < 0.0 <= sense * value(c, end)):
+        if not (sense * quartic_value(c, start) < 0.0 <= sense * quartic_value(c, end)):
             turns = sense < 0.0 and not touching and start < end < horizon and end > after
             if turns and _touches_at(flight, arc, offset_radius, end, tolerance):
                 return end
@@ -222,6 +228,6 @@ def _curved(
             if abs(step * bending(now)) <= abs(rate):
                 t = min(max(t - step, start), end)
         x, y = place_after(flight, t)
-        if t > after and in_span(arc, x, y, tolerance):
+        if t > after and is_in_span(arc, x, y, tolerance):
             return t
     return math.inf

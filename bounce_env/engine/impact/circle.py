@@ -66,12 +66,12 @@ def curved_circle_time(flight: Flight, offset_radius: float, tolerance: float, h
     x, y, vx, vy, ax, ay = flight
     t = 0.0
     if ax == 0.0:
-        t, end = passing(x, vx, offset_radius + tolerance)
+        t, end = passing_times(x, vx, offset_radius + tolerance)
         horizon = min(horizon, end)
         if not comes_near(moved(y, vy, ay, t), sped(vy, ay, t), ay, horizon - t, offset_radius + tolerance):
             return math.inf
     elif ay == 0.0:
-        t, end = passing(y, vy, offset_radius + tolerance)
+        t, end = passing_times(y, vy, offset_radius + tolerance)
         horizon = min(horizon, end)
         if not comes_near(moved(x, vx, ax, t), sped(vx, ax, t), ax, horizon - t, offset_radius + tolerance):
             return math.inf
@@ -105,7 +105,7 @@ def curved_circle_time(flight: Flight, offset_radius: float, tolerance: float, h
 
 
 @function
-def passing(x: float, v: float, offset_radius: float) -> tuple[float, float]:
+def passing_times(x: float, v: float, offset_radius: float) -> tuple[float, float]:
     """Return the durations between which |x + v t| <= offset_radius, as (from, to) with from >= 0; from > to: never."""
     if abs(v) < STANDING:
         return 0.0, math.inf if abs(x) <= offset_radius else -1.0

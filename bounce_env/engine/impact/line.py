@@ -64,12 +64,12 @@ def leaves_end(flight: Flight, line: Line, tolerance: float) -> bool:
     along = flight.x * line.ux + flight.y * line.uy
     lean = flight.vx * line.ux + flight.vy * line.uy
     if abs(lean) <= slow:
-        lean = _or_else(acceleration_along(flight, line.ux, line.uy), lean)
+        lean = _pull_or(acceleration_along(flight, line.ux, line.uy), lean)
     return (along >= line.length - tolerance and lean > 0.0) or (along <= tolerance and lean < 0.0)
 
 
 @function
-def _or_else(value: float | None, other: float) -> float:
+def _pull_or(value: float | None, other: float) -> float:
     return other if value is None else value
 
 

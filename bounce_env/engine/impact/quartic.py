@@ -35,13 +35,13 @@ def without_root_at_zero(c: Coefficients) -> Coefficients:
 
 
 @function
-def value(c: Coefficients, t: float) -> float:
+def quartic_value(c: Coefficients, t: float) -> float:
     """Return the polynomial at t."""
     return c[0] + (c[1] + (c[2] + (c[3] + c[4] * t) * t) * t) * t
 
 
 @function
-def slope(c: Coefficients, t: float) -> float:
+def quartic_slope(c: Coefficients, t: float) -> float:
     """Return its first derivative at t."""
     return c[1] + (2.0 * c[2] + (3.0 * c[3] + 4.0 * c[4] * t) * t) * t
 
@@ -63,13 +63,13 @@ def inflections(c: Coefficients, horizon: float) -> tuple[float, float]:
 @function
 def turning_point(c: Coefficients, low: float, high: float) -> float:
     """Return where in [low, high] the first derivative, monotone there, is zero; `low` if nowhere."""
-    at_low = slope(c, low)
-    if (at_low < 0.0) == (slope(c, high) < 0.0):
+    at_low = quartic_slope(c, low)
+    if (at_low < 0.0) == (quartic_slope(c, high) < 0.0):
         return low
     start, end = low, high
     t = 0.5 * (start + end)
     for _ in range(BRACKETING_STEPS):
-        s = slope(c, t)
+        s = quartic_slope(c, t)
         if (s < 0.0) == (at_low < 0.0):
             start = t
         else:
@@ -87,16 +87,16 @@ def turning_point(c: Coefficients, low: float, high: float) -> float:
 @function
 def root_between(c: Coefficients, low: float, high: float) -> float:
     """Return the root in [low, high], where the polynomial is monotone and changes sign."""
-    at_low = value(c, low)
+    at_low = quartic_value(c, low)
     start, end = low, high
     t = 0.5 * (start + end)
     for _ in range(BRACKETING_STEPS):
-        f = value(c, t)
+        f = quartic_value(c, t)
         if (f < 0.0) == (at_low < 0.0):
             start = t
         else:
             end = t
-        following = t - f / slope(c, t)
+        following = t - f / quartic_slope(c, t)
         if not start < following < end:
             following = 0.5 * (start + end)
         if following == t or end - start <= 1e-16 * end:

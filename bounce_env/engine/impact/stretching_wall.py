@@ -17,7 +17,7 @@ from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
 
 
 @function
-def segment_gap(
+def wall_gap(
     flight: Flight, dx: float, dy: float, ex: float, ey: float, facing: float, tolerance: float
 ) -> tuple[float, float, float]:
     """Return the distance [m] from a wall along (dx, dy) to a flight's point, its rate of change [m/s], and the side.
@@ -43,7 +43,7 @@ def segment_gap(
 
 
 @function
-def _bound(flight: Flight, pull: float, dx: float, dy: float, ex: float, ey: float, window: float) -> float:
+def _wall_gap_bound(flight: Flight, pull: float, dx: float, dy: float, ex: float, ey: float, window: float) -> float:
     """A of the module's text over the next `window` seconds [m/s^2]."""
     spread = math.sqrt(ex * ex + ey * ey)
     # When the wall is shortest: where its ends are nearest to each other.
@@ -80,7 +80,7 @@ def stretching_wall_time(
     for step in range(16 * SEARCH_STEPS):
         now = flight_after(flight, t)
         rx, ry = dx + ex * t, dy + ey * t
-        distance, rate, facing = segment_gap(now, rx, ry, ex, ey, facing, tolerance)
+        distance, rate, facing = wall_gap(now, rx, ry, ex, ey, facing, tolerance)
         if step == 0 and distance - offset_radius <= tolerance and rate > 0.0:
             away = distance - offset_radius  # what is left of a gap after a bounce is rounding
         gap = distance - offset_radius - away
@@ -89,7 +89,7 @@ def stretching_wall_time(
         # step that this allows.
         size = math.sqrt(now.x * now.x + now.y * now.y) + math.sqrt(rx * rx + ry * ry)
         window = min(horizon - t, 2.0 * size / (speed + spread + math.sqrt(pull * size)))
-        bound = _bound(now, pull, rx, ry, ex, ey, window)
+        bound = _wall_gap_bound(now, pull, rx, ry, ex, ey, window)
         if gap <= tolerance:
             if rate < -ULPS_OF_SPEED * (speed + spread):
                 after = t + closed_after(gap, rate, bound)
@@ -97,7 +97,7 @@ def stretching_wall_time(
             rate, gap = max(rate, 0.0), max(gap, 0.0)
         before = t
         nearer = min(window, 3.0 * open_for(gap, rate, bound))
-        bound = _bound(now, pull, rx, ry, ex, ey, nearer)
+        bound = _wall_gap_bound(now, pull, rx, ry, ex, ey, nearer)
         t += min(open_for(gap, rate, bound), nearer)
         if rate >= 0.0:
             # Along the surface no step is shorter than that in which a gap changes by what counts as touching.

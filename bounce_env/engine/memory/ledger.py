@@ -37,7 +37,7 @@ class Row(NamedTuple):
 
 
 @function
-def append(ledger: Table, world: Record, row: Row) -> None:
+def append_row(ledger: Table, world: Record, row: Row) -> None:
     """Write a row into the ledger, where there is one."""
     if ledger is None:
         return
@@ -55,7 +55,7 @@ def append_contact(
 ) -> None:
     """Write that ball `k`, of velocity (vx0, vy0) [m/s] before, is where it is and has its present velocity now."""
     s = surface
-    append(
+    append_row(
         ledger,
         world,
         Row(
@@ -70,7 +70,7 @@ def append_crossing(
 ) -> None:
     """Write that ball `k` crosses an element at (x, y) [m], at its next event."""
     s = surface
-    append(ledger, world, Row(ball.next_hi, k, s.element, CROSSING, x, y, s.nx, s.ny, vx, vy, vx, vy, s.ux, s.uy))
+    append_row(ledger, world, Row(ball.next_hi, k, s.element, CROSSING, x, y, s.nx, s.ny, vx, vy, vx, vy, s.ux, s.uy))
 
 
 @function
@@ -80,7 +80,7 @@ def append_stop(
 ) -> None:  # fmt: skip
     """Write that a part stops or turns back: a place on it [m], and that place's velocity [m/s] before and after."""
     (x, y), (vx0, vy0), (vx1, vy1) = place, before, after
-    append(ledger, world, Row(time, -1, element, PART_STOPS, x, y, 0.0, 0.0, vx0, vy0, vx1, vy1, 0.0, 0.0))
+    append_row(ledger, world, Row(time, -1, element, PART_STOPS, x, y, 0.0, 0.0, vx0, vy0, vx1, vy1, 0.0, 0.0))
 
 
 @function

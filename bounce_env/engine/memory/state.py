@@ -64,7 +64,7 @@ class State(NamedTuple):
 _FIRST_OF_WORLDS = State._fields.index("worlds")
 
 
-def moving(state: State) -> tuple[Array, ...]:
+def moving_arrays(state: State) -> tuple[Array, ...]:
     """Return what changes while worlds are played: the arrays with a row for each world."""
     return tuple(array for array in state[_FIRST_OF_WORLDS:] if array is not None)
 

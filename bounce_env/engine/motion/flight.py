@@ -80,16 +80,16 @@ def seen_from(flight: Flight, x: float, y: float) -> Flight:
 
 
 @function
-def slowed_by(flight: Flight, vx: float, vy: float) -> Flight:
+def seen_from_moving(flight: Flight, vx: float, vy: float) -> Flight:
     """Return the flight as seen in a frame that moves at (vx, vy) [m/s]."""
     return Flight(flight.x, flight.y, flight.vx - vx, flight.vy - vy, flight.ax, flight.ay)
 
 
-def _no_component(flight: Flight, nx: float, ny: float) -> None:
+def _no_acceleration_along(flight: Flight, nx: float, ny: float) -> None:
     return None
 
 
-@where("ax", otherwise=_no_component)
+@where("ax", otherwise=_no_acceleration_along)
 def acceleration_along(flight: Flight, nx: float, ny: float) -> Feature:
     """Return the component of the acceleration [m/s^2] along a unit vector; None where there is no acceleration."""
     return flight.ax * nx + flight.ay * ny
@@ -114,11 +114,11 @@ def swept(x: float, v: float, a: Feature, t: float) -> tuple[float, float]:
     return low, high
 
 
-def _for_ever(flight: Flight, extent: float) -> float:
+def _endless_flight(flight: Flight, extent: float) -> float:
     return math.inf
 
 
-@where("ax", otherwise=_for_ever)
+@where("ax", otherwise=_endless_flight)
 def time_in_scene(flight: Flight, extent: float) -> float:
     """Return a duration [s] after which a free flight has fallen below everything in the scene for good.
 
@@ -163,17 +163,17 @@ def slow_on_circle(flight: Flight, offset_radius: float, tolerance: float) -> fl
 
 
 @function
-def _turning(flight: Flight) -> float:
+def _bending_coasting(flight: Flight) -> float:
     distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
     across = (flight.x * flight.vy - flight.y * flight.vx) / distance
     return across * across / distance
 
 
-@where("ax", otherwise=_turning)
+@where("ax", otherwise=_bending_coasting)
 def bending(flight: Flight) -> float:
     """Return the second derivative [m/s^2] of the distance from the origin."""
     distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
-    return _turning(flight) + (flight.x * flight.ax + flight.y * flight.ay) / distance
+    return _bending_coasting(flight) + (flight.x * flight.ax + flight.y * flight.ay) / distance
 
 
 @function

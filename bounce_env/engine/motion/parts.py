@@ -11,7 +11,7 @@ from typing import NamedTuple
 from bounce_env.engine.compile.jit import Record, function, unfolded, where
 from bounce_env.engine.memory.lookup import ends_of, turn_of
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.dragged_wall import line_at, velocity_on
+from bounce_env.engine.motion.dragged_wall import velocity_on_wall, wall_line_at
 from bounce_env.engine.motion.instant import later, since
 from bounce_env.engine.motion.sincos import sin_cos
 
@@ -73,7 +73,7 @@ def _capsule_velocity(part: MovingPart, core: Core, rx: float, ry: float) -> tup
 def surface_velocity(part: MovingPart, core: Core, rx: float, ry: float) -> tuple[float, float]:
     """Return the velocity [m/s] of a point of a part, at (rx, ry) [m] from the (x, y) of its core."""
     if is_dragged(part):
-        return velocity_on(part.ends, min(max((rx * core.ux + ry * core.uy) / core.front, 0.0), 1.0))
+        return velocity_on_wall(part.ends, min(max((rx * core.ux + ry * core.uy) / core.front, 0.0), 1.0))
     return _capsule_velocity(part, core, rx, ry)
 
 
@@ -107,7 +107,7 @@ def _capsule_core(part: MovingPart, hi: float, lo: float) -> Core:
 def core_at(part: MovingPart, hi: float, lo: float) -> Core:
     """Return where a part is at an instant of its present motion."""
     if is_dragged(part):
-        x, y, ux, uy, length = line_at(part.ends, since(hi, lo, part.motion.hi, part.motion.lo))
+        x, y, ux, uy, length = wall_line_at(part.ends, since(hi, lo, part.motion.hi, part.motion.lo))
         return Core(x, y, ux, uy, 0.0, length)
     return _capsule_core(part, hi, lo)
 

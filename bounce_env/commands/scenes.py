@@ -46,7 +46,7 @@ def is_path(source: str) -> bool:
 
 def draw_scene(source: str, output: Path | None, width: int | None, height: int | None) -> int:
     """Write the picture of a scene, parts where they are after a reset, to `output`; None for beside the scene."""
-    from bounce_env.engine.placement import cores_at_start  # noqa: PLC0415 (imports numba: after what is quick to refuse)
+    from bounce_env.engine.placement import part_cores_at_start  # noqa: PLC0415 (imports numba: after what is quick to refuse)
     from bounce_env.render import Picture, Renderer  # noqa: PLC0415
     from bounce_env.render.lazy_pygame import load_pygame  # noqa: PLC0415
 
@@ -66,7 +66,7 @@ def draw_scene(source: str, output: Path | None, width: int | None, height: int 
         renderer = Renderer(scene, width, height)
     except ValueError as error:
         raise Refused(f"--{error}") from error
-    cores = np.array([*cores_at_start(scene).values()]).reshape(-1, 4)
+    cores = np.array([*part_cores_at_start(scene).values()]).reshape(-1, 4)
     frame = renderer.frame(Picture(balls=(), cores=cores))
     pygame = load_pygame()
     image = pygame.image.frombuffer(frame, (frame.shape[1], frame.shape[0]), "RGB")

@@ -64,7 +64,15 @@ def _packed_tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
     parts = _padded_table(PART, scenes, _pack_parts)
     rows = (_pack_faces, _pack_circles, _pack_arcs, _pack_sensors, _pack_circle_sensors, _pack_field_edges, _pack_parts)
     heads = [
-        (len(s.elements), *(len(of(s)) for of in rows), extent(s), _max_speed(s), s.rest_speed, s.ball.radius, s.ball.b)
+        (
+            len(s.elements),
+            *(len(of(s)) for of in rows),
+            scene_extent(s),
+            _max_speed(s),
+            s.rest_speed,
+            s.ball.radius,
+            s.ball.b,
+        )
         for s in scenes
     ]
     elements = _padded_table(ELEMENT, scenes, _pack_materials)
@@ -87,7 +95,7 @@ def _packed_tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
     }
 
 
-def extent(scene: Scene) -> float:
+def scene_extent(scene: Scene) -> float:
     """The scale of round-off [m]: the largest coordinate that the elements occupy plus the ball's radius.
 
     Rounded up to a power of two, so that no digit of it depends on how a bounding box was computed.
@@ -99,7 +107,7 @@ def extent(scene: Scene) -> float:
     return math.ldexp(1.0, math.frexp(largest)[1])
 
 
-def direction(start: Point, end: Point) -> tuple[float, float, float]:
+def segment_direction(start: Point, end: Point) -> tuple[float, float, float]:
     """Unit vector and length [m] of a segment. Scaled first, so that no square under- or overflows."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     scale = max(abs(dx), abs(dy))
@@ -140,7 +148,7 @@ def _standing_walls(scene: Scene) -> Iterable[tuple[int, Wall]]:
 
 
 def _pack_faces(scene: Scene) -> list[Row]:
-    return [(*w.start, *direction(w.start, w.end), scene.ball.radius, i) for i, w in _standing_walls(scene)]
+    return [(*w.start, *segment_direction(w.start, w.end), scene.ball.radius, i) for i, w in _standing_walls(scene)]
 
 
 def _pack_one_way(scenes: Sequence[Scene]) -> Array | None:
@@ -154,7 +162,7 @@ def _pack_one_way(scenes: Sequence[Scene]) -> Array | None:
     return one_way
 
 
-def switch_ends(state: State, scene: Scene, disabled: Collection[int]) -> None:
+def switch_round_ends(state: State, scene: Scene, disabled: Collection[int]) -> None:
     """Let the round ends in the tables of one scene be those of the elements that are not `disabled` (indices)."""
     if state.circles is None:
         return
@@ -211,7 +219,7 @@ def _pack_arcs(scene: Scene) -> list[Row]:
 
 def _pack_sensors(scene: Scene) -> list[Row]:
     return [
-        (*e.segment[0], *direction(*e.segment), int(e.drain), i)
+        (*e.segment[0], *segment_direction(*e.segment), int(e.drain), i)
         for i, e in enumerate(scene.elements)
         if isinstance(e, Sensor) and e.segment is not None
     ]
@@ -230,14 +238,14 @@ def _pack_field_edges(scene: Scene) -> list[Row]:
     rows: list[Row] = []
     for field in scene.elements:
         if isinstance(field, Field):
-            points = field.points if _turns_left(field.points) else tuple(reversed(field.points))
+            points = field.points if _is_counter_clockwise(field.points) else tuple(reversed(field.points))
             for k, point in enumerate(points):
-                ux, uy, _ = direction(point, points[(k + 1) % len(points)])
+                ux, uy, _ = segment_direction(point, points[(k + 1) % len(points)])
                 rows.append((*point, ux, uy, *field.acceleration, int(k + 1 == len(points))))
     return rows
 
 
-def _turns_left(points: Sequence[Point]) -> bool:
+def _is_counter_clockwise(points: Sequence[Point]) -> bool:
     (ax, ay), (bx, by), (cx, cy) = points[:3]
     return (bx - ax) * (cy - by) > (by - ay) * (cx - bx)
 
@@ -249,7 +257,7 @@ def _pack_parts(scene: Scene) -> list[Row]:
 def _pack_part(e: Part, ball_radius: float) -> Row:
     """A PART but for the index of its element."""
     if isinstance(e, Wall):
-        ux, uy, length = direction(e.start, e.end)
+        ux, uy, length = segment_direction(e.start, e.end)
         return (*e.start, ux, uy, 0.0, length, 0.0, ball_radius, 0.0, 0.0, 0.0, 0.0, 0.0)
     thick = (e.radius, e.radius + ball_radius)
     if isinstance(e, Flipper):
@@ -258,9 +266,9 @@ def _pack_part(e: Part, ball_radius: float) -> Row:
         return (*e.pivot, c, s, 0.0, e.length, *thick, stroke, 0.0, e.up_speed, e.down_speed, 0.0)
     if isinstance(e, Bumper):
         assert e.rail_end is not None
-        ux, uy, span = direction(e.center, e.rail_end)
+        ux, uy, span = segment_direction(e.center, e.rail_end)
         return (*e.center, ux, uy, 0.0, 0.0, *thick, span, 0.0, e.speed, e.speed, e.speed)
-    ux, uy, span = direction(e.rail_start, e.rail_end)
+    ux, uy, span = segment_direction(e.rail_start, e.rail_end)
     shape = (-e.half_width, e.half_width, *thick)
     return (*e.rail_start, ux, uy, *shape, span, 0.5 * span, e.max_speed, e.max_speed, 0.0)
 
@@ -285,7 +293,7 @@ def _pack_drag_limits(scenes: Sequence[Scene]) -> Array | None:
         return None
     drag_limits = np.zeros((len(scenes), max(len(scene.parts) for scene in scenes)), DRAG_LIMITS)
     for s, scene in enumerate(scenes):
-        side = extent(scene)
+        side = scene_extent(scene)
         for m, (_, e) in enumerate(scene.parts):
             if isinstance(e, Wall):
                 low, high = e.reach or ((-side, -side), (side, side))

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.packing import direction, extent, sin_cos
+from bounce_env.engine.packing import scene_extent, segment_direction, sin_cos
 from bounce_env.engine.tolerances import START_OVERLAP
 from bounce_env.scene import Arc, Bumper, Element, Flipper, Paddle, Part, Scene, Wall
 from bounce_env.scene.errors import label
@@ -23,7 +23,7 @@ def place_clear(scene: Scene, cores: Mapping[int, Core], x: float, y: float, dis
     switched off. A ball may be half-way through a one-way wall. Raises ValueError, naming the
     element, where the ball overlaps one by more than `START_OVERLAP` of the scene's extent.
     """
-    allowed = START_OVERLAP * extent(scene)
+    allowed = START_OVERLAP * scene_extent(scene)
     for index, element in enumerate(scene.elements):
         nearest = _distance_from_element(element, cores.get(index), x, y)
         if nearest is None or index in disabled:
@@ -59,7 +59,7 @@ def separate(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
             dx, dy = (positions[k] - positions[j]).tolist()
             distance = math.sqrt(dx * dx + dy * dy)
             overlap = 2.0 * radius - distance
-            if overlap > START_OVERLAP * extent(scene):
+            if overlap > START_OVERLAP * scene_extent(scene):
                 raise ValueError(
                     f"ball {k} at {tuple(positions[k].tolist())} overlaps ball {j} by {overlap:.6g} m: "
                     f"their centres must be at least {at_least(2.0 * radius, 6)} m apart"
@@ -68,12 +68,12 @@ def separate(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
                 positions[k] += np.array((dx, dy)) * (overlap / distance)
 
 
-def cores_at_start(scene: Scene) -> dict[int, Core]:
+def part_cores_at_start(scene: Scene) -> dict[int, Core]:
     """The ends of the parts' cores after a reset [m], by index in `scene.elements`."""
-    return {index: _core_at_start(element) for index, element in scene.parts}
+    return {index: _part_core_at_start(element) for index, element in scene.parts}
 
 
-def _core_at_start(part: Part) -> Core:
+def _part_core_at_start(part: Part) -> Core:
     if isinstance(part, Flipper):
         (x, y), (s, c) = part.pivot, sin_cos(part.rest_angle)
         return part.pivot, (x + part.length * c, y + part.length * s)
@@ -81,7 +81,7 @@ def _core_at_start(part: Part) -> Core:
         return part.center, part.center
     if isinstance(part, Wall):
         return part.start, part.end
-    ux, uy, span = direction(part.rail_start, part.rail_end)
+    ux, uy, span = segment_direction(part.rail_start, part.rail_end)
     x, y = part.rail_start
     x, y = x + 0.5 * span * ux, y + 0.5 * span * uy
     ax, ay = part.half_width * ux, part.half_width * uy

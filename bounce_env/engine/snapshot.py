@@ -21,7 +21,7 @@ _CHECKSUM = 32
 
 def snapshot_bytes(scene: Scene, state: State) -> bytes:
     """The state of a world of `scene`."""
-    head = _HEAD.pack(_MAGIC, VERSION, _scene_digest(scene))
+    head = _HEAD.pack(_MAGIC, VERSION, _snapshot_digest(scene))
     data = head + b"".join(array.tobytes() for array in moving_arrays(state))
     return data + hashlib.sha256(data).digest()
 
@@ -38,7 +38,7 @@ def restore_bytes(data: bytes, scene: Scene, state: State) -> None:
     _, version, digest = _HEAD.unpack_from(data)
     if version != VERSION:
         raise ValueError(f"snapshot of version {version}: must be of version {VERSION}")
-    if digest != _scene_digest(scene):
+    if digest != _snapshot_digest(scene):
         raise ValueError("snapshot of another scene: must be restored into a world of an equal one")
     if len(data) != size or hashlib.sha256(data[:-_CHECKSUM]).digest() != data[-_CHECKSUM:]:
         raise ValueError(f"snapshot of {len(data)} bytes: is truncated or changed, must be {size} bytes as written")
@@ -48,6 +48,6 @@ def restore_bytes(data: bytes, scene: Scene, state: State) -> None:
         offset += array.nbytes
 
 
-def _scene_digest(scene: Scene) -> bytes:
+def _snapshot_digest(scene: Scene) -> bytes:
     # The repr of a float has all its digits, and a scene is made of floats, names and flags.
     return hashlib.sha256(repr(scene).encode()).digest()

@@ -9,21 +9,21 @@ from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.events.loop import LEDGER_FULL
 from bounce_env.engine.memory.records import LEDGER, OUT
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.parts import offset_at
+from bounce_env.engine.motion.parts import part_offset_at
 from bounce_env.engine.motion.readout import view
-from bounce_env.engine.packing import pack, switch_ends
-from bounce_env.engine.placement import Core, cores_at_start, place_clear, separate
+from bounce_env.engine.packing import pack, switch_round_ends
+from bounce_env.engine.placement import Core, part_cores_at_start, place_clear, separate
 from bounce_env.engine.snapshot import restore_bytes, snapshot_bytes
 from bounce_env.engine.world_kernels import (
-    advance_to,
-    begin_call,
-    command_part,
-    command_wall,
-    place_ball,
-    push_balls,
-    reset_world,
-    resolve_all,
-    resume_as_told,
+    world_advance_to,
+    world_begin_call,
+    world_command_part,
+    world_command_wall,
+    world_place_ball,
+    world_push_balls,
+    world_reset,
+    world_resolve_all,
+    world_resume_part,
 )
 from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor, Wall
 from bounce_env.wording import nearest, numbers, real, shown, whole
@@ -35,7 +35,7 @@ MAX_EVENTS = 1_000_000
 MOST_EVENTS = 2**62
 MAX_BALLS = 64
 _LEDGER_ROWS = 1024
-_offset_at = from_python(offset_at)
+_offset_at = from_python(part_offset_at)
 
 
 class World:
@@ -67,11 +67,11 @@ class World:
         (which it names) or another ball; the world is then as before.
         """
         at, speed = self._rows("position", position), self._rows("velocity", velocity)
-        cores = cores_at_start(self.scene)
+        cores = part_cores_at_start(self.scene)
         for k, (x, y) in enumerate(at.tolist()):
             at[k] = place_clear(self.scene, cores, x, y)
         separate(self.scene, at)
-        reset_world(self._state, at, speed)
+        world_reset(self._state, at, speed)
         self._switch_ends()
         self._started = True
 
@@ -105,16 +105,16 @@ class World:
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
         world = self._state.worlds[0]
-        hi, lo = begin_call(self._state, seconds)
+        hi, lo = world_begin_call(self._state, seconds)
         if not ledger:
-            advance_to(self._state, hi, lo, max_events, None)
+            world_advance_to(self._state, hi, lo, max_events, None)
             return None
         pages: list[npt.NDArray[Any]] = []
         page = np.zeros(_LEDGER_ROWS, LEDGER)
         code = LEDGER_FULL
         while code == LEDGER_FULL:
             world.rows = 0
-            code = advance_to(self._state, hi, lo, max_events, page)
+            code = world_advance_to(self._state, hi, lo, max_events, page)
             pages.append(page[: world.rows].copy())
         return np.concatenate(pages)
 
@@ -135,7 +135,7 @@ class World:
             raise ValueError(f"command: {shown(name)} must be one of the scene's parts: {sorted(names)}{hint}")
         part = self._parts[names[name]][1]
         if isinstance(part, Wall):
-            command_wall(self._state, names[name], _checked_end_velocities(name, value, self.scene.max_speed))
+            world_command_wall(self._state, names[name], _checked_end_velocities(name, value, self.scene.max_speed))
             return
         if isinstance(part, Flipper):
             if not isinstance(value, bool | np.bool_):
@@ -144,7 +144,7 @@ class World:
         else:
             fastest = part.max_speed if isinstance(part, Paddle) else part.speed
             velocity = _checked_part_speed(name, value, fastest)
-        command_part(self._state, names[name], velocity)
+        world_command_part(self._state, names[name], velocity)
 
     def enable(self, name: str, on: bool) -> None:
         """Switch an element on or off: one that is off is not hit, and a ball that it supports falls. On after `reset`.
@@ -173,7 +173,7 @@ class World:
                     place_clear(self.scene, self._cores(), x, y, disabled=others)
         disabled[0, index] = not on
         self._switch_ends()
-        resolve_all(self._state)
+        world_resolve_all(self._state)
 
     def push(self, change: npt.ArrayLike) -> None:
         """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now.
@@ -184,7 +184,7 @@ class World:
         rows = numbers(change)
         if rows is None or rows.shape != (2,) or not (abs(rows) <= LARGEST).all():
             raise ValueError(f"push = {shown(change)}: must be (dvx, dvy), finite, at most {LARGEST:g} m/s")
-        push_balls(self._state, float(rows[0]), float(rows[1]))
+        world_push_balls(self._state, float(rows[0]), float(rows[1]))
 
     def replace(self, scene: Scene) -> None:
         """Go on in another scene: time, balls and their velocities stay; a part of the same name and kind keeps its
@@ -210,11 +210,11 @@ class World:
         for k, (x, y, vx, vy) in enumerate(balls.tolist()):
             if self._state.balls[0, k].status != OUT:
                 x, y = place_clear(scene, _cores_by_index(scene, cores), x, y)  # noqa: PLW2901
-            place_ball(state, k, x, y, vx, vy)
+            world_place_ball(state, k, x, y, vx, vy)
         out = self._state.balls["status"][0] == OUT
         state.balls[0, out] = self._state.balls[0, out]
         for m in range(len(scene.parts)):
-            resume_as_told(state, m)
+            world_resume_part(state, m)
         self.scene, self._state, self._parts = scene, state, scene.parts
 
     def _move_parts(self, scene: Scene, state: State) -> None:
@@ -294,7 +294,7 @@ class World:
     def _switch_ends(self) -> None:
         """An end that several elements share is, when the first of them is switched off, that of the next one."""
         assert self._state.disabled is not None
-        switch_ends(self._state, self.scene, np.flatnonzero(self._state.disabled[0]).tolist())
+        switch_round_ends(self._state, self.scene, np.flatnonzero(self._state.disabled[0]).tolist())
 
     def _cores(self) -> dict[int, Core]:
         return _cores_by_index(self.scene, self._now()[1])

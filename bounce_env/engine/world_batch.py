@@ -13,7 +13,7 @@ from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import later
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack
-from bounce_env.engine.placement import cores_at_start, place_clear
+from bounce_env.engine.placement import part_cores_at_start, place_clear
 from bounce_env.scene import Scene
 
 Floats = npt.NDArray[np.float64]
@@ -65,7 +65,7 @@ class WorldBatch:
                 raise ValueError(f"{name}: must be finite and of shape ({len(self.state.worlds)}, 2)")
         for row, s in zip(at, self.state.worlds["scene"].tolist(), strict=True):
             scene = self.scenes[s]
-            row[:] = place_clear(scene, cores_at_start(scene), float(row[0]), float(row[1]))
+            row[:] = place_clear(scene, part_cores_at_start(scene), float(row[0]), float(row[1]))
         _reset(self.state, at, speed)
 
     def advance(self, seconds: float, max_events: int = 1_000_000) -> int:

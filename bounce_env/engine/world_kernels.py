@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 
 
 @kernel
-def reset_world(state: State, position: Floats, velocity: Floats) -> None:
+def world_reset(state: State, position: Floats, velocity: Floats) -> None:
     state = borrow(state)
     restart(state, 0)
     for k in range(position.shape[0]):
@@ -26,7 +26,7 @@ def reset_world(state: State, position: Floats, velocity: Floats) -> None:
 
 
 @kernel
-def begin_call(state: State, seconds: float) -> tuple[float, float]:
+def world_begin_call(state: State, seconds: float) -> tuple[float, float]:
     """Begin a call of `advance`: the instant it goes to."""
     clear_hits(state, 0)
     resume(state, 0)
@@ -35,21 +35,21 @@ def begin_call(state: State, seconds: float) -> tuple[float, float]:
 
 
 @kernel
-def advance_to(state: State, hi: float, lo: float, max_events: int, ledger: Any) -> int:
+def world_advance_to(state: State, hi: float, lo: float, max_events: int, ledger: Any) -> int:
     state = borrow(state)
     code: int = run(state, 0, hi, lo, max_events, ledger)
     return code
 
 
 @kernel
-def push_balls(state: State, dvx: float, dvy: float) -> None:
+def world_push_balls(state: State, dvx: float, dvy: float) -> None:
     state = borrow(state)
     for k in range(state.balls.shape[1]):
         disturb(state, 0, k, 1.0, dvx, dvy)
 
 
 @kernel
-def resolve_all(state: State) -> None:
+def world_resolve_all(state: State) -> None:
     """Resolve every ball anew: an element has been switched on or off."""
     state = borrow(state)
     free_all_crushed(state, 0)
@@ -58,25 +58,25 @@ def resolve_all(state: State) -> None:
 
 
 @kernel
-def place_ball(state: State, k: int, x: float, y: float, vx: float, vy: float) -> None:
+def world_place_ball(state: State, k: int, x: float, y: float, vx: float, vy: float) -> None:
     state = borrow(state)
     place(state, 0, k, x, y, vx, vy)
 
 
 @kernel
-def command_part(state: State, part: int, velocity: float) -> None:
+def world_command_part(state: State, part: int, velocity: float) -> None:
     state = borrow(state)
     command(state, 0, part, velocity)
 
 
 @kernel
-def command_wall(state: State, part: int, velocities: Floats) -> None:
+def world_command_wall(state: State, part: int, velocities: Floats) -> None:
     state = borrow(state)
     command_ends(state, 0, part, (velocities[0, 0], velocities[0, 1]), (velocities[1, 0], velocities[1, 1]))
 
 
 @kernel
-def resume_as_told(state: State, part: int) -> None:
+def world_resume_part(state: State, part: int) -> None:
     """Let a part move on as it was commanded to, before any flight is planned: no ball has to mind it yet."""
     state = borrow(state)
     resume_part(state, 0, part)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.placement import cores_at_start, place_clear
+from bounce_env.engine.placement import part_cores_at_start, place_clear
 from bounce_env.games.game import Game
 from bounce_env.games.paddle.levels import END_OF_LEVELS
 from bounce_env.wording import at_least, at_most, nearest, numbers, shown
@@ -80,7 +80,7 @@ def _check(game: Game, row: npt.NDArray[np.float64], given: Mapping[str, Any]) -
                 f"x {at_least(left, 6, slack)} to {at_most(right, 6, slack)} "
                 f"and y {at_least(below, 6, slack)} to {at_most(above, 6, slack)}"
             )
-        row[:2] = place_clear(scene, cores_at_start(scene), x, y)
+        row[:2] = place_clear(scene, part_cores_at_start(scene), x, y)
     if scene.max_speed is not None and math.hypot(vx, vy) > scene.max_speed:
         speed = _given(given, "velocity", (vx, vy))
         raise ValueError(f"options['velocity'] = {speed}: must be at most {scene.max_speed} m/s")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.placement import cores_at_start, element_gaps
+from bounce_env.engine.placement import element_gaps, part_cores_at_start
 from bounce_env.scene import Element, Scene, Sensor, Wall
 
 MOST_CELLS = 160
@@ -59,7 +59,7 @@ def inside_of(scene: Scene) -> Inside | None:
 def _free(scene: Scene, left: float, bottom: float, cell: float, columns: int, lines: int) -> npt.NDArray[np.bool_]:
     """Cells in whose middle a ball, made so large that no line is finer than the raster, overlaps nothing."""
     closed = replace(scene, elements=tuple(map(_shut, scene.elements)))
-    cores = cores_at_start(closed)
+    cores = part_cores_at_start(closed)
     margin = max(0.0, cell - scene.ball.radius)
     room = np.empty((columns, lines), np.bool_)
     for i in range(columns):

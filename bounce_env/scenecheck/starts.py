@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.placement import cores_at_start, element_gaps
+from bounce_env.engine.placement import element_gaps, part_cores_at_start
 from bounce_env.scene import Scene
 from bounce_env.scenecheck.inside import Inside
 
@@ -38,7 +38,7 @@ def random_starts(scene: Scene, inside: Inside | None, balls: int, seed: int) ->
 
 def _places(scene: Scene, inside: Inside | None, generator: np.random.Generator) -> Iterator[tuple[float, float]]:
     left, bottom, right, top = scene.bounds
-    cores = cores_at_start(scene)
+    cores = part_cores_at_start(scene)
     missed = 0
     while missed < TRIES:
         for x, y in generator.uniform((left, bottom), (right, top), (AT_ONCE, 2)).tolist():

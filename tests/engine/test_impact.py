@@ -18,8 +18,8 @@ from tests.conftest import soak_count
 pytestmark = pytest.mark.fast
 
 capsule_time, circle_time, face_time = map(from_python, (capsule.capsule_time, circle.circle_time, line.face_time))
-falling_time, straight_circle_time = map(from_python, (roots.falling_time, circle.straight_circle_time))
-crossing_time = from_python(arc.crossing_time)
+falling_time, straight_circle_time = map(from_python, (roots.falling_root, circle.straight_circle_time))
+crossing_time = from_python(arc.arc_crossing_time)
 
 SLACK = 16.0 * 2.0**-52
 coordinate = st.floats(-5.0, 5.0)

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from bounce_env.engine.placement import cores_at_start
+from bounce_env.engine.placement import part_cores_at_start
 from bounce_env.render import Picture, Renderer, painter
 from bounce_env.render.shapes import Stroke
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
@@ -336,7 +336,7 @@ def test_later_elements_lie_above_earlier_ones() -> None:
 def test_built_in_scenes_can_be_drawn_at_any_size(name: str, width: int | None, height: int | None) -> None:
     scene = load_scene(name)
     renderer = Renderer(scene, width, height)
-    cores = [[x0, y0, x1, y1] for (x0, y0), (x1, y1) in cores_at_start(scene).values()]
+    cores = [[x0, y0, x1, y1] for (x0, y0), (x1, y1) in part_cores_at_start(scene).values()]
     x0, y0, x1, y1 = scene.bounds
     center = ((x0 + x1) / 2, (y0 + y1) / 2)
     frame = renderer.frame(Picture([center], cores, hits=np.ones(len(scene.elements)), score=123.0))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bounce_env.engine.placement import cores_at_start, element_gaps
+from bounce_env.engine.placement import element_gaps, part_cores_at_start
 from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, load_scene
 from bounce_env.scenecheck.inside import inside_of
 from bounce_env.scenecheck.places import clusters
@@ -77,7 +77,7 @@ def test_a_table_with_a_hole_has_no_inside():
 
 def test_balls_start_inside_where_nothing_is_in_their_way():
     starts = random_starts(CUP, inside_of(CUP), 500, 0)
-    cores = cores_at_start(CUP)
+    cores = part_cores_at_start(CUP)
     assert all(gap >= 0 for x, y, _, _ in starts.tolist() for _, gap in element_gaps(CUP, cores, x, y))
     assert (starts[:, 1] > -0.04).all()  # none below the drain
     assert starts[:, 1].min() < 0.1

@@ -3,12 +3,12 @@
 import math
 
 from bounce_env.engine.compile.jit import function, where
-from bounce_env.engine.contact.touching import on_capsule
+from bounce_env.engine.contact.touching import nearest_on_capsule
 from bounce_env.engine.memory.lookup import side_of_part
 from bounce_env.engine.memory.records import NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import flight_of, fly, path_bound, touch_tolerance
-from bounce_env.engine.motion.parts import core_at, moving_part
+from bounce_env.engine.motion.flight import flight_of, flight_path_bound, flight_tolerance, fly_ball
+from bounce_env.engine.motion.parts import moving_part, part_core_at
 from bounce_env.engine.tolerances import CORNER, ROOM_TO_MEET, SEARCH_ENDS, ULPS_OF_LENGTH
 
 
@@ -17,20 +17,20 @@ def end_flight(state: State, w: int, k: int, t: float, hi: float, lo: float) -> 
     """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
     ball, extent = state.balls[w, k], state.scenes[state.worlds[w].scene].extent
     flight = flight_of(state, ball)
-    ball.tolerance = touch_tolerance(flight, extent, t)
-    way = path_bound(flight, t)
+    ball.tolerance = flight_tolerance(flight, extent, t)
+    way = flight_path_bound(flight, t)
     if way > CORNER * ULPS_OF_LENGTH * extent:
         ball.confined = 0
     ball.strayed += way
     if ball.strayed > ROOM_TO_MEET * extent:
         ball.strayed, ball.legs = 0.0, ball.legs + 1
-    fly(ball, flight, t, hi, lo)
+    fly_ball(ball, flight, t, hi, lo)
     if t > 0.0:  # in no time nothing is rounded, and a push may wait to be resolved
-        _keep_along(state, w, k)
+        _keep_along_face(state, w, k)
 
 
 @where("faces")
-def _keep_along(state: State, w: int, k: int) -> None:
+def _keep_along_face(state: State, w: int, k: int) -> None:
     """Take from the velocity of a ball that has slid on a wall what is not along it: rounding, of speeds it had."""
     ball = state.balls[w, k]
     if ball.contact >= 0:
@@ -40,7 +40,7 @@ def _keep_along(state: State, w: int, k: int) -> None:
 
 
 @function
-def snap(state: State, w: int, k: int) -> None:
+def snap_to_hit(state: State, w: int, k: int) -> None:
     """Put the ball on the surface of what it hits, along the normal: the rounding of the flight ends here."""
     ball = state.balls[w, k]
     face, part = -1, -1
@@ -95,8 +95,8 @@ def _snap_to_arc(state: State, w: int, k: int) -> None:
 @where("parts")
 def _snap_to_part(state: State, w: int, k: int, m: int) -> None:
     ball, part = state.balls[w, k], moving_part(state, w, m)
-    core, offset_radius = core_at(part, ball.hi, ball.lo), part.shape.offset_radius
-    nx, ny, distance, _ = on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
+    core, offset_radius = part_core_at(part, ball.hi, ball.lo), part.shape.offset_radius
+    nx, ny, distance, _ = nearest_on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
     # A search may end before a hit: then there is nothing to put the ball on.
     if distance - offset_radius <= SEARCH_ENDS * (offset_radius + core.front - core.back):
         ball.x += (offset_radius - distance) * nx

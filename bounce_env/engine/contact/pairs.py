@@ -8,7 +8,7 @@ from bounce_env.engine.contact.jams import are_stuck, count_meeting, have_no_roo
 from bounce_env.engine.contact.restitution import capped
 from bounce_env.engine.contact.squeeze import take_opposed
 from bounce_env.engine.detect.pairs import pair_noise, pair_weight, plan_pairs
-from bounce_env.engine.detect.schedule import resolve_next
+from bounce_env.engine.detect.schedule import schedule_resolve
 from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import BOUNCE, CRUSHED
 from bounce_env.engine.memory.state import State
@@ -43,7 +43,7 @@ def collide(state: State, w: int, k: int, j: int, hi: float, lo: float, ledger: 
     note_speed(world, one, other)
     for ball in (one, other):
         if ball.status != CRUSHED:
-            resolve_next(ball)
+            schedule_resolve(ball)
     plan_pairs(state, w, k)
     plan_pairs(state, w, j)
 

@@ -12,9 +12,9 @@ from bounce_env.engine.contact.hops import hop_on
 from bounce_env.engine.contact.resting import bear, find_contact, is_slow
 from bounce_env.engine.contact.restitution import closing_speed, is_soft, normal_load, surface_speed
 from bounce_env.engine.contact.sides import update_crossing_sides
-from bounce_env.engine.contact.touching import collect_touches, keep_outside
+from bounce_env.engine.contact.touching import collect_touches, keep_outside_touched
 from bounce_env.engine.detect.pairs import plan_pairs
-from bounce_env.engine.detect.schedule import plan_rest, plan_standing
+from bounce_env.engine.detect.schedule import schedule_rest, schedule_standing
 from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import (
     CONTACT_BEGINS,
@@ -58,7 +58,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     ball.settling = 0
     collect_touches(state, w, k)
     if state.parts is not None:
-        keep_outside(ball, state.touches, w)
+        keep_outside_touched(ball, state.touches, w)
     if settling != JAMMED and _is_stuck(ball, state.touches, w, extent):
         _stop(state, w, k, ledger)
         settling = JAMMED
@@ -72,7 +72,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
             return
     if duration >= 0.0:
         ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
-    plan_rest(state, w, k)
+    schedule_rest(state, w, k)
     plan_pairs(state, w, k)
 
 
@@ -148,7 +148,7 @@ def _bounce_and_go(state: State, w: int, k: int, contact: int, support: int, at_
     if state.gravity is not None and single >= 0 and ball.contact == FLYING:
         duration = _settle(state, w, k, single)
     for _ in range(2):
-        plan_standing(state, w, k)
+        schedule_standing(state, w, k)
         if duration < 0.0 or ball.hit_after > duration:
             break
         # Something comes before the bounces are over: they go on one by one.

@@ -6,15 +6,16 @@ Sides matter to a ball of no radius, which can be on a wall, and to what is cros
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.detect.surfaces import line_of, wall_normal
-from bounce_env.engine.impact.line import leaves_end
+from bounce_env.engine.detect.surfaces import face_line, face_normal
+from bounce_env.engine.impact.grazing import bending
+from bounce_env.engine.impact.line import leaves_line_end
 from bounce_env.engine.memory.lookup import is_off
 from bounce_env.engine.memory.records import CLOSED, NEXT_PART, OFF_END
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.dragged_wall import height_over_wall
-from bounce_env.engine.motion.flight import Flight, bending, moved, seen_from, sped
+from bounce_env.engine.motion.dragged_wall import height_over_dragged_wall
+from bounce_env.engine.motion.flight import Flight, coordinate_after, flight_seen_from, speed_after
 from bounce_env.engine.motion.instant import since
-from bounce_env.engine.motion.parts import is_dragged, moving_part
+from bounce_env.engine.motion.parts import is_dragged_part, moving_part
 from bounce_env.engine.tolerances import ULPS_OF_SPEED
 
 
@@ -24,8 +25,8 @@ def update_sides(state: State, w: int, k: int, start: Flight, t: float) -> None:
 
     start: where and how its flight began, `t` seconds ago; its acceleration is not asked.
     """
-    left = _left_face(state, w, k)
-    nx, ny = wall_normal(state, w, k, left)
+    left = _face_left_at_end(state, w, k)
+    nx, ny = face_normal(state, w, k, left)
     _update_faces(state, w, k, start, t)
     _update_arcs(state, w, k, start, t)
     _update_parts(state, w, k, start, t)
@@ -36,7 +37,7 @@ def update_sides(state: State, w: int, k: int, start: Flight, t: float) -> None:
 
 
 @function
-def _side_after(
+def _side_after_flight(
     height: float, rate: float, height0: float, rate0: float, t: float, slow: float, tolerance: float, side: int
 ) -> int:
     """On which side of a line or circle the ball is: away from it the height tells, on it the way that it came.
@@ -62,7 +63,7 @@ def _update_faces(state: State, w: int, k: int, start: Flight, t: float) -> None
         height = (ball.y - line.y) * line.ux - (ball.x - line.x) * line.uy
         height0 = (start.y - line.y) * line.ux - (start.x - line.x) * line.uy
         rate, rate0 = ball.vy * line.ux - ball.vx * line.uy, start.vy * line.ux - start.vx * line.uy
-        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, slow, ball.tolerance, sides[w, k, i])
+        sides[w, k, i] = _side_after_flight(height, rate, height0, rate0, t, slow, ball.tolerance, sides[w, k, i])
 
 
 @where("arc_sides")
@@ -78,7 +79,7 @@ def _update_arcs(state: State, w: int, k: int, start: Flight, t: float) -> None:
         # Of a touch in passing (see `grazes`) the instant, and so the way the distance changes, is only roughly known.
         curvature = bending(Flight(dx, dy, ball.vx, ball.vy, ball.ax, ball.ay))
         vague = max(slow, math.sqrt(2.0 * abs(curvature) * ball.tolerance))
-        sides[w, k, i] = _side_after(height, rate, height0, rate0, t, vague, ball.tolerance, sides[w, k, i])
+        sides[w, k, i] = _side_after_flight(height, rate, height0, rate0, t, vague, ball.tolerance, sides[w, k, i])
 
 
 @where("part_sides")
@@ -88,21 +89,24 @@ def _update_parts(state: State, w: int, k: int, start: Flight, t: float) -> None
     slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
     for m in range(state.scenes[state.worlds[w].scene].parts):
         part = moving_part(state, w, m)
-        if not is_dragged(part):
+        if not is_dragged_part(part):
             continue
         ends = part.ends
         until = since(ball.hi, ball.lo, part.motion.hi, part.motion.lo)
         both = max(min(t, until), 0.0)
-        x, y = moved(start.x, start.vx, ball.ax, t - both), moved(start.y, start.vy, ball.ay, t - both)
-        vx, vy = sped(start.vx, ball.ax, t - both), sped(start.vy, ball.ay, t - both)
-        height0, rate0 = height_over_wall(ends, until - both, x, y, vx, vy)
-        height, rate = height_over_wall(ends, until, ball.x, ball.y, ball.vx, ball.vy)
+        x, y = (
+            coordinate_after(start.x, start.vx, ball.ax, t - both),
+            coordinate_after(start.y, start.vy, ball.ay, t - both),
+        )
+        vx, vy = speed_after(start.vx, ball.ax, t - both), speed_after(start.vy, ball.ay, t - both)
+        height0, rate0 = height_over_dragged_wall(ends, until - both, x, y, vx, vy)
+        height, rate = height_over_dragged_wall(ends, until, ball.x, ball.y, ball.vx, ball.vy)
         slower = slow + ULPS_OF_SPEED * (abs(ends.vx0) + abs(ends.vy0) + abs(ends.vx1) + abs(ends.vy1))
-        sides[w, k, m] = _side_after(height, rate, height0, rate0, both, slower, ball.tolerance, sides[w, k, m])
+        sides[w, k, m] = _side_after_flight(height, rate, height0, rate0, both, slower, ball.tolerance, sides[w, k, m])
 
 
 @where("face_sides", otherwise=-1)
-def _left_face(state: State, w: int, k: int) -> int:
+def _face_left_at_end(state: State, w: int, k: int) -> int:
     """The face off whose end a ball of no radius comes just now, sliding or flying along it; -1 if there is none.
 
     What goes on at the end may be met at the same instant, and be what it is said to have hit.
@@ -113,7 +117,7 @@ def _left_face(state: State, w: int, k: int) -> int:
     now = Flight(ball.x, ball.y, ball.vx, ball.vy, None, None)
     for i in range(state.scenes[scene].faces):
         face = state.faces[scene, i]
-        leaves = leaves_end(seen_from(now, face.x, face.y), line_of(face), ball.tolerance)
+        leaves = leaves_line_end(flight_seen_from(now, face.x, face.y), face_line(face), ball.tolerance)
         if leaves and not is_off(state, w, face.element):
             return i
     return -1

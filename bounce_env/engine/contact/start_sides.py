@@ -4,10 +4,10 @@ import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.dragged_wall import wall_line_at
+from bounce_env.engine.motion.dragged_wall import dragged_wall_line_at
 from bounce_env.engine.motion.fields import gravity_of
 from bounce_env.engine.motion.instant import since
-from bounce_env.engine.motion.parts import is_dragged, moving_part
+from bounce_env.engine.motion.parts import is_dragged_part, moving_part
 from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 
 Vector = tuple[float, float]
@@ -46,8 +46,8 @@ def _set_part_sides(state: State, w: int, k: int) -> None:
     for m in range(state.scenes[scene].parts):
         part = moving_part(state, w, m)
         state.part_sides[w, k, m] = 0
-        if is_dragged(part):
-            x, y, ux, uy, _ = wall_line_at(part.ends, since(ball.hi, ball.lo, part.motion.hi, part.motion.lo))
+        if is_dragged_part(part):
+            x, y, ux, uy, _ = dragged_wall_line_at(part.ends, since(ball.hi, ball.lo, part.motion.hi, part.motion.lo))
             height = (ball.y - y) * ux - (ball.x - x) * uy
             state.part_sides[w, k, m] = _initial_side(ball, gravity_of(state, scene), height, -uy, ux)
 

@@ -7,17 +7,19 @@ import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.restitution import is_standing
-from bounce_env.engine.detect.surfaces import line_of
-from bounce_env.engine.impact.arc import is_in_span
-from bounce_env.engine.impact.line import is_beside
+from bounce_env.engine.detect.surfaces import face_line
+from bounce_env.engine.impact.arc import is_in_arc_span
+from bounce_env.engine.impact.line import is_beside_line
 from bounce_env.engine.memory.lookup import is_off, is_one_way, side_of_part, side_on
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.parts import Core, MovingPart, core_at, moving_part, spin_of, surface_velocity
+from bounce_env.engine.motion.parts import Core, MovingPart, moving_part, part_core_at, part_spin, part_surface_velocity
 from bounce_env.engine.tolerances import ROLLING
 
 
 @function
-def on_capsule(core: Core, x: float, y: float, side: int, tolerance: float) -> tuple[float, float, float, float]:
+def nearest_on_capsule(
+    core: Core, x: float, y: float, side: int, tolerance: float
+) -> tuple[float, float, float, float]:
     """Return how a capsule's core lies to the point (x, y) [m]: unit normal, distance [m], and the nearest point.
 
     As (nx, ny, distance, nearest), the last along the core; distances are taken from the core's own (x, y).
@@ -47,7 +49,7 @@ def collect_touches(state: State, w: int, k: int) -> None:
 
 
 @function
-def keep_outside(ball: Record, touches: Table, w: int) -> None:
+def keep_outside_touched(ball: Record, touches: Table, w: int) -> None:
     """Put a ball that touches a part on what stands and touches it, too: if the part moves, on other parts as well.
 
     It has been put on the part; one that keeps pushing it there would, rounding by rounding, push it through.
@@ -93,7 +95,7 @@ def _touch_faces(state: State, w: int, k: int) -> None:
         height = dy * face.ux - dx * face.uy
         if abs(height) > face.offset_radius + ball.tolerance:
             continue
-        if not is_beside(line_of(face), dx, dy, ball.tolerance) or is_off(state, w, face.element):
+        if not is_beside_line(face_line(face), dx, dy, ball.tolerance) or is_off(state, w, face.element):
             continue
         facing = float(side_on(state.face_sides, w, k, i))
         if facing == 0.0:
@@ -136,7 +138,7 @@ def _touch_arcs(state: State, w: int, k: int) -> None:
         side = side_on(state.arc_sides, w, k, i)
         if side != 0:
             outside, inside = outside and side > 0, inside and side < 0
-        if not (outside or inside) or not is_in_span(arc, dx, dy, ball.tolerance) or is_off(state, w, arc.element):
+        if not (outside or inside) or not is_in_arc_span(arc, dx, dy, ball.tolerance) or is_off(state, w, arc.element):
             continue
         facing = 1.0 if outside else -1.0
         curvature = 1.0 / arc.outer if outside else -1.0 / arc.inner
@@ -152,8 +154,10 @@ def _touch_parts(state: State, w: int, k: int) -> None:
         if not state.zones[w, k, m].inside:
             continue
         part = moving_part(state, w, m)
-        core = core_at(part, ball.hi, ball.lo)
-        nx, ny, distance, nearest = on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
+        core = part_core_at(part, ball.hi, ball.lo)
+        nx, ny, distance, nearest = nearest_on_capsule(
+            core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance
+        )
         if abs(distance) > part.shape.offset_radius + ball.tolerance or is_off(state, w, part.shape.element):
             continue
         if not _touch_part(state, w, k, m, part, core, nx, ny, distance, nearest):
@@ -167,9 +171,11 @@ def _touch_part(
 ) -> bool:  # fmt: skip
     """List what a ball touches of part `m`: where the straight side passes into the round end both; False: no room."""
     ball, shape, side = state.balls[w, k], part.shape, side_of_part(state, w, k, m)
-    spin, moves = spin_of(part, core)
+    spin, moves = part_spin(part, core)
     offset_radius = core.front + shape.offset_radius if moves or part.turn != 0 else shape.offset_radius
-    vx, vy = surface_velocity(part, core, nearest * core.ux + shape.radius * nx, nearest * core.uy + shape.radius * ny)
+    vx, vy = part_surface_velocity(
+        part, core, nearest * core.ux + shape.radius * nx, nearest * core.uy + shape.radius * ny
+    )
     pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
     rest_speed = state.scenes[state.worlds[w].scene].rest_speed
     least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * offset_radius) * offset_radius))

@@ -10,7 +10,7 @@ from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.memory.records import OUT
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import Flight, flight_after, flight_of, magnitude, touch_tolerance
+from bounce_env.engine.motion.flight import Flight, acceleration_magnitude, flight_after, flight_of, flight_tolerance
 from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.tolerances import (
     CORNER,
@@ -43,7 +43,7 @@ def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float
     of_one, of_other = flight_of(state, one), flight_of(state, other)
     horizon = min(one.end_after - s, other.end_after - t)
     head = state.scenes[state.worlds[w].scene]
-    tolerance = max(touch_tolerance(of_one, head.extent, s), touch_tolerance(of_other, head.extent, t))
+    tolerance = max(flight_tolerance(of_one, head.extent, s), flight_tolerance(of_other, head.extent, t))
     of_one, of_other = flight_after(of_one, s), flight_after(of_other, t)
     seen = _seen_from_other_ball(of_one, of_other)
     offset_radius, noise = 2.0 * head.ball_radius, pair_noise(one, other, of_one, of_other, head)
@@ -119,4 +119,4 @@ def may_pair_wait(world: Record, closing: float, hi: float, lo: float) -> bool:
 @function
 def pair_weight(one: Record, other: Record) -> float:
     """Return the larger of the accelerations [m/s^2] that two balls are under."""
-    return max(magnitude(one.gx, one.gy), magnitude(other.gx, other.gy))
+    return max(acceleration_magnitude(one.gx, one.gy), acceleration_magnitude(other.gx, other.gy))

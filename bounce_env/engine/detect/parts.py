@@ -3,7 +3,7 @@
 import math
 
 from bounce_env.engine.compile.jit import Record, function, where
-from bounce_env.engine.impact.arc import Circle, crossing_time
+from bounce_env.engine.impact.arc import Circle, arc_crossing_time
 from bounce_env.engine.impact.capsule import capsule_time
 from bounce_env.engine.impact.line import Line, face_time
 from bounce_env.engine.impact.rotating_capsule import rotating_capsule_time
@@ -12,31 +12,31 @@ from bounce_env.engine.memory.lookup import is_off, side_of_part
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import (
     Flight,
-    acceleration_along,
+    flight_acceleration_along,
     flight_after,
-    seen_from,
-    seen_from_moving,
-    swept,
-    touch_tolerance,
+    flight_seen_from,
+    flight_seen_from_moving,
+    flight_tolerance,
+    swept_interval,
 )
 from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.motion.parts import (
     Core,
     MovingPart,
-    core_at,
-    is_dragged,
+    is_dragged_part,
     moving_part,
-    stop_instant,
-    surface_velocity,
+    part_core_at,
+    part_stop_instant,
+    part_surface_velocity,
 )
-from bounce_env.engine.motion.roots import falling_time
+from bounce_env.engine.motion.roots import falling_root
 
 # The zone of a part is wider than its reach by this share: it keeps rounding of the border from hiding a hit.
 ZONE_MARGIN = 1.01
 
 
 @function
-def plan_zones(state: State, w: int, k: int, flight: Flight, now: float) -> None:
+def plan_part_zones(state: State, w: int, k: int, flight: Flight, now: float) -> None:
     """Bring the ball's zones up to `now` seconds into its flight, and set when the next of them changes.
 
     The zone of a part is where it can be met: of one that slides the strip along its rail, of one that turns the circle
@@ -44,31 +44,31 @@ def plan_zones(state: State, w: int, k: int, flight: Flight, now: float) -> None
     re-bases the flight nor shows in the ledger.
     """
     state.balls[w, k].zone_after = math.inf
-    _plan_zones(state, w, k, flight, now)
+    _plan_part_zones(state, w, k, flight, now)
 
 
 @where("parts", inline=False)
-def _plan_zones(state: State, w: int, k: int, flight: Flight, now: float) -> None:
+def _plan_part_zones(state: State, w: int, k: int, flight: Flight, now: float) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for m in range(state.scenes[scene].parts):
         part, zone = moving_part(state, w, m), state.zones[w, k, m]
-        if is_dragged(part):
+        if is_dragged_part(part):
             zone.inside, zone.after = 1, math.inf
             continue
-        seen = seen_from(flight, part.shape.x, part.shape.y)
+        seen = flight_seen_from(flight, part.shape.x, part.shape.y)
         if now == 0.0:
-            zone.inside, zone.after = 1 if _is_in_zone(seen, part) else 0, 0.0
+            zone.inside, zone.after = 1 if _is_in_part_zone(seen, part) else 0, 0.0
         elif zone.after <= now:
             zone.inside = 1 - zone.inside
         if zone.after <= now:
-            zone.after = _zone_change(ball, seen, part, zone.inside == 1, now)
+            zone.after = _part_zone_change(ball, seen, part, zone.inside == 1, now)
             if zone.after > ball.end_after:
                 zone.after = math.inf
         ball.zone_after = min(ball.zone_after, zone.after)
 
 
 @function
-def _is_in_zone(seen: Flight, part: MovingPart) -> bool:
+def _is_in_part_zone(seen: Flight, part: MovingPart) -> bool:
     shape = part.shape
     if part.turn != 0:
         border = ZONE_MARGIN * (shape.front + shape.offset_radius)
@@ -77,28 +77,28 @@ def _is_in_zone(seen: Flight, part: MovingPart) -> bool:
 
 
 @function
-def _zone_change(ball: Record, seen: Flight, part: MovingPart, inside: bool, after: float) -> float:
+def _part_zone_change(ball: Record, seen: Flight, part: MovingPart, inside: bool, after: float) -> float:
     """When the ball next passes the border of a part's zone, from the flight's start, no earlier than `after` [s]."""
     shape = part.shape
     if part.turn != 0:
         border = Circle(ZONE_MARGIN * (shape.front + shape.offset_radius), 1.0 if inside else -1.0)
-        return crossing_time(seen, None, border, after == 0.0, ball.tolerance, after, ball.end_after)
-    return _strip_change(seen, shape.ux, shape.uy, ZONE_MARGIN * shape.offset_radius, inside, after)
+        return arc_crossing_time(seen, None, border, after == 0.0, ball.tolerance, after, ball.end_after)
+    return _part_strip_change(seen, shape.ux, shape.uy, ZONE_MARGIN * shape.offset_radius, inside, after)
 
 
 @function
-def _strip_change(flight: Flight, ux: float, uy: float, border: float, inside: bool, after: float) -> float:
+def _part_strip_change(flight: Flight, ux: float, uy: float, border: float, inside: bool, after: float) -> float:
     """When a flight next passes the distance `border` from the line along (ux, uy), no earlier than `after` [s]."""
     height, rate = flight.y * ux - flight.x * uy, flight.vy * ux - flight.vx * uy
     best = math.inf
     for facing in (1.0, -1.0):
         gap = facing * height - border
         if inside:
-            pull = acceleration_along(flight, facing * uy, -facing * ux)
-            t = falling_time(-gap, gap > 0.0, -facing * rate, pull)
+            pull = flight_acceleration_along(flight, facing * uy, -facing * ux)
+            t = falling_root(-gap, gap > 0.0, -facing * rate, pull)
         else:
-            pull = acceleration_along(flight, -facing * uy, facing * ux)
-            t = falling_time(gap, gap < 0.0, facing * rate, pull)
+            pull = flight_acceleration_along(flight, -facing * uy, facing * ux)
+            t = falling_root(gap, gap < 0.0, facing * rate, pull)
         if t >= after:
             best = min(best, t)
     return best
@@ -120,19 +120,19 @@ def meet_part(
     else:
         hi, lo = ball.hi, ball.lo
     t = since(hi, lo, ball.hi, ball.lo)
-    stop_hi, stop_lo = stop_instant(motion, shape)
+    stop_hi, stop_lo = part_stop_instant(motion, shape)
     horizon = min(min(ball.end_after, leaves_after) - t, since(stop_hi, stop_lo, hi, lo))
-    core = core_at(part, hi, lo)
-    seen = seen_from(flight_after(flight, t), core.x, core.y)
-    tolerance = touch_tolerance(flight, extent, t)
-    if is_dragged(part):
-        after = _meet_wall(part, seen, core, side, tolerance, horizon)
+    core = part_core_at(part, hi, lo)
+    seen = flight_seen_from(flight_after(flight, t), core.x, core.y)
+    tolerance = flight_tolerance(flight, extent, t)
+    if is_dragged_part(part):
+        after = _meet_dragged_part(part, seen, core, side, tolerance, horizon)
     elif part.turn != 0 and motion.velocity != 0.0:
         spin = part.turn * motion.velocity
         after = rotating_capsule_time(seen, core, shape.offset_radius, spin, tolerance, horizon)
     else:
         if part.turn == 0:
-            seen = seen_from_moving(seen, motion.velocity * core.ux, motion.velocity * core.uy)
+            seen = flight_seen_from_moving(seen, motion.velocity * core.ux, motion.velocity * core.uy)
         after = capsule_time(seen, core, shape.offset_radius, tolerance, horizon)
     if after == math.inf:
         return math.inf, 0.0
@@ -140,14 +140,16 @@ def meet_part(
 
 
 @where("ends", otherwise=math.inf)
-def _meet_wall(part: MovingPart, flight: Flight, core: Core, side: int, tolerance: float, horizon: float) -> float:
+def _meet_dragged_part(
+    part: MovingPart, flight: Flight, core: Core, side: int, tolerance: float, horizon: float
+) -> float:
     """Hit of a dragged wall, seen from where its start is now: a duration [s], or inf."""
     ends, offset_radius = part.ends, part.shape.offset_radius
-    seen = seen_from_moving(flight, ends.vx0, ends.vy0)
+    seen = flight_seen_from_moving(flight, ends.vx0, ends.vy0)
     ex, ey = ends.vx1 - ends.vx0, ends.vy1 - ends.vy0
     if ex != 0.0 or ey != 0.0:
         dx, dy = core.front * core.ux, core.front * core.uy
-        if not _comes_near(seen, dx, dy, ex, ey, offset_radius + tolerance, horizon):
+        if not _comes_near_dragged_part(seen, dx, dy, ex, ey, offset_radius + tolerance, horizon):
             return math.inf
         return stretching_wall_time(seen, dx, dy, ex, ey, offset_radius, side, tolerance, horizon)
     if offset_radius > 0.0:
@@ -156,30 +158,30 @@ def _meet_wall(part: MovingPart, flight: Flight, core: Core, side: int, toleranc
 
 
 @function
-def _comes_near(
+def _comes_near_dragged_part(
     flight: Flight, dx: float, dy: float, ex: float, ey: float, offset_radius: float, horizon: float
 ) -> bool:
     """Whether the boxes that a ball and a wall from the origin along (dx, dy), changing by (ex, ey), sweep meet.
 
     Most walls are rejected by that alone. Written so that infinite or undefined borders reject nothing.
     """
-    left, right = swept(flight.x, flight.vx, flight.ax, horizon)
-    below, above = swept(flight.y, flight.vy, flight.ay, horizon)
+    left, right = swept_interval(flight.x, flight.vx, flight.ax, horizon)
+    below, above = swept_interval(flight.y, flight.vy, flight.ay, horizon)
     sx, sy = dx + ex * horizon, dy + ey * horizon
     apart = left > max(dx, sx, 0.0) + offset_radius or right < min(dx, sx, 0.0) - offset_radius
     return not (apart or below > max(dy, sy, 0.0) + offset_radius or above < min(dy, sy, 0.0) - offset_radius)
 
 
 @function
-def plan_meetings(state: State, w: int, k: int, flight: Flight) -> None:
+def plan_part_hits(state: State, w: int, k: int, flight: Flight) -> None:
     """Search the parts in whose zone the ball is, and set which one it hits first, and when."""
     ball = state.balls[w, k]
     ball.part_hi, ball.part_lo, ball.part_index = math.inf, 0.0, -1
-    _plan_meetings(state, w, k, flight)
+    _plan_part_hits(state, w, k, flight)
 
 
 @where("parts")
-def _plan_meetings(state: State, w: int, k: int, flight: Flight) -> None:
+def _plan_part_hits(state: State, w: int, k: int, flight: Flight) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = state.scenes[scene]
     for m in range(head.parts):
@@ -197,10 +199,13 @@ def way_off_part(state: State, w: int, k: int, flight: Flight) -> float:
     """Return after how long [s] a ball that slides on a part comes to an end of its straight side; inf: it does not."""
     ball = state.balls[w, k]
     part = moving_part(state, w, ball.rides)
-    core = core_at(part, ball.hi, ball.lo)
+    core = part_core_at(part, ball.hi, ball.lo)
     rx, ry = ball.x - core.x, ball.y - core.y
-    sx, sy = surface_velocity(part, core, rx, ry)
+    sx, sy = part_surface_velocity(part, core, rx, ry)
     along, rate = rx * core.ux + ry * core.uy, (ball.vx - sx) * core.ux + (ball.vy - sy) * core.uy
-    pull, against = acceleration_along(flight, core.ux, core.uy), acceleration_along(flight, -core.ux, -core.uy)
-    to_back = falling_time(along - core.back, False, rate, pull)
-    return min(to_back, falling_time(core.front - along, False, -rate, against))
+    pull, against = (
+        flight_acceleration_along(flight, core.ux, core.uy),
+        flight_acceleration_along(flight, -core.ux, -core.uy),
+    )
+    to_back = falling_root(along - core.back, False, rate, pull)
+    return min(to_back, falling_root(core.front - along, False, -rate, against))

@@ -8,9 +8,9 @@ a step ends. A ball in contact with a wall flies, too: along its line, under wha
 import math
 
 from bounce_env.engine.compile.jit import Record, function, routine
-from bounce_env.engine.detect.parts import plan_meetings, plan_zones, way_off_part
+from bounce_env.engine.detect.parts import plan_part_hits, plan_part_zones, way_off_part
 from bounce_env.engine.detect.sensors import Crossing, next_crossing
-from bounce_env.engine.detect.surfaces import first_arc, first_circle, first_end, first_face, wall_normal
+from bounce_env.engine.detect.surfaces import face_normal, first_arc, first_circle, first_end, first_face
 from bounce_env.engine.memory.records import (
     NEXT_HIT,
     NEXT_PART,
@@ -25,41 +25,41 @@ from bounce_env.engine.memory.records import (
     RIDING,
 )
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import flight_of, time_in_scene
+from bounce_env.engine.motion.flight import flight_of, flight_time_in_scene
 from bounce_env.engine.motion.instant import before, later
 
 
 @routine
-def plan_parts(state: State, w: int, k: int) -> None:
+def schedule_parts(state: State, w: int, k: int) -> None:
     """Search the parts in whose zone a ball is, and set its next event."""
     ball = state.balls[w, k]
-    plan_meetings(state, w, k, flight_of(state, ball))
-    schedule(ball)
+    plan_part_hits(state, w, k, flight_of(state, ball))
+    schedule_next_event(ball)
 
 
 @function
-def plan_crossing(state: State, w: int, k: int, after: float, kind: int, index: int) -> None:
+def schedule_crossing(state: State, w: int, k: int, after: float, kind: int, index: int) -> None:
     """Search the next crossing after (after, kind, index) in the present flight, and set the ball's next event."""
-    _plan_crossing(state, w, k, Crossing(after, kind, index))
-    schedule(state.balls[w, k])
+    _plan_next_crossing(state, w, k, Crossing(after, kind, index))
+    schedule_next_event(state.balls[w, k])
 
 
 @function
-def _plan_crossing(state: State, w: int, k: int, last: Crossing) -> None:
+def _plan_next_crossing(state: State, w: int, k: int, last: Crossing) -> None:
     ball = state.balls[w, k]
     following = next_crossing(state, w, k, flight_of(state, ball), last)
     ball.sensor_after, ball.sensor_kind, ball.sensor_index = following.after, following.kind, following.row
 
 
 @function
-def plan_standing(state: State, w: int, k: int) -> None:
+def schedule_standing(state: State, w: int, k: int) -> None:
     """Search everything that stands: what ends the flight that begins now, and when."""
     ball = state.balls[w, k]
     flight = flight_of(state, ball)
-    nx, ny = wall_normal(state, w, k, ball.contact)
+    nx, ny = face_normal(state, w, k, ball.contact)
     if ball.contact == RIDING:
         nx, ny = ball.nx, ball.ny
-    after = time_in_scene(flight, state.scenes[state.worlds[w].scene].extent)
+    after = flight_time_in_scene(flight, state.scenes[state.worlds[w].scene].extent)
     after, face = first_face(state, w, k, flight, nx, ny, after)
     ball.hit_kind, ball.hit_index = ON_FACE, face
     after, circle = first_circle(state, w, k, flight, nx, ny, after)
@@ -82,23 +82,23 @@ def plan_standing(state: State, w: int, k: int) -> None:
 
 
 @function
-def plan_rest(state: State, w: int, k: int) -> None:
+def schedule_rest(state: State, w: int, k: int) -> None:
     """Search what does not end the flight, or may move: sensors, zones, parts; and set the ball's next event."""
-    _plan_crossing(state, w, k, Crossing(-1.0, -1, -1))
-    plan_zones(state, w, k, flight_of(state, state.balls[w, k]), 0.0)
-    plan_parts(state, w, k)
+    _plan_next_crossing(state, w, k, Crossing(-1.0, -1, -1))
+    plan_part_zones(state, w, k, flight_of(state, state.balls[w, k]), 0.0)
+    schedule_parts(state, w, k)
 
 
 @function
-def resolve_next(ball: Record) -> None:
+def schedule_resolve(ball: Record) -> None:
     """Let the ball's next event be at the instant of its last: to bounce from what it touches, and to be planned."""
     ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, 0.0, 0.0
     ball.sensor_after, ball.zone_after, ball.part_hi, ball.part_lo = math.inf, math.inf, math.inf, 0.0
-    schedule(ball)
+    schedule_next_event(ball)
 
 
 @function
-def schedule(ball: Record) -> None:
+def schedule_next_event(ball: Record) -> None:
     """Set the ball's next event from what is kept. At one instant: zone, standing element, part, sensor."""
     hi, lo, kind = _instant_after(ball, ball.zone_after, NEXT_ZONE)
     hit_hi, hit_lo, _ = _instant_after(ball, ball.hit_after, NEXT_HIT)

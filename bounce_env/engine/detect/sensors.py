@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 from bounce_env.engine.compile.jit import function, where
-from bounce_env.engine.impact.arc import entry_time
+from bounce_env.engine.impact.arc import arc_entry_time
 from bounce_env.engine.impact.line import Line, facing_time, line_time
 from bounce_env.engine.memory.records import CIRCLE_ENTRY, FIELD_BORDER, LINE_SENSOR
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import Flight, seen_from
+from bounce_env.engine.motion.flight import Flight, flight_seen_from
 from bounce_env.engine.tolerances import ULP
 
 
@@ -46,7 +46,7 @@ def _first_line_crossing(state: State, w: int, k: int, flight: Flight, last: Cro
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].sensors):
         sensor, side = state.sensors[scene, i], state.sensor_sides[w, k, i]
-        seen, line = seen_from(flight, sensor.x, sensor.y), Line(sensor.ux, sensor.uy, sensor.length, 0.0)
+        seen, line = flight_seen_from(flight, sensor.x, sensor.y), Line(sensor.ux, sensor.uy, sensor.length, 0.0)
         for facing in (1.0, -1.0):
             t = facing_time(seen, line, facing, side, ball.tolerance, ball.end_after)
             if t < best.after and _follows_crossing(t, LINE_SENSOR, i, last):
@@ -62,7 +62,9 @@ def _first_circle_entry(state: State, w: int, k: int, flight: Flight, last: Cros
         # A ball may enter a circle twice in one flight: what came before is no answer.
         tie = _follows_crossing(last.after, CIRCLE_ENTRY, i, last)
         after = last.after - abs(last.after) * ULP if tie else last.after
-        t = entry_time(seen_from(flight, ring.x, ring.y), ring.radius, outside, ball.tolerance, after, ball.end_after)
+        t = arc_entry_time(
+            flight_seen_from(flight, ring.x, ring.y), ring.radius, outside, ball.tolerance, after, ball.end_after
+        )
         if t < best.after and _follows_crossing(t, CIRCLE_ENTRY, i, last):
             best = Crossing(t, CIRCLE_ENTRY, i)
     return best
@@ -73,7 +75,7 @@ def _first_field_border(state: State, w: int, k: int, flight: Flight, last: Cros
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].fields):
         edge, side = state.field_edges[scene, i], state.field_edge_sides[w, k, i]
-        seen, line = seen_from(flight, edge.x, edge.y), Line(edge.ux, edge.uy, math.inf, 0.0)
+        seen, line = flight_seen_from(flight, edge.x, edge.y), Line(edge.ux, edge.uy, math.inf, 0.0)
         for facing in (1.0, -1.0):
             t = line_time(seen, line, facing, side, ball.tolerance)
             if t <= ball.end_after and t < best.after and _follows_crossing(t, FIELD_BORDER, i, last):

@@ -3,23 +3,29 @@
 from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.impact.arc import arc_time
 from bounce_env.engine.impact.circle import circle_time
-from bounce_env.engine.impact.line import Line, face_time, facing_time, is_beside, leaves_end
+from bounce_env.engine.impact.line import Line, face_time, facing_time, is_beside_line, leaves_line_end
 from bounce_env.engine.memory.lookup import is_off, is_one_way, is_sliding, side_on
 from bounce_env.engine.memory.records import RIDING
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import Flight, acceleration_along, place_after, seen_from, swept
-from bounce_env.engine.motion.roots import falling_time
+from bounce_env.engine.motion.flight import (
+    Flight,
+    flight_acceleration_along,
+    flight_place_after,
+    flight_seen_from,
+    swept_interval,
+)
+from bounce_env.engine.motion.roots import falling_root
 from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 
 
 @function
-def line_of(face: Record) -> Line:
+def face_line(face: Record) -> Line:
     """Return the wall of a face, as seen from its start."""
     return Line(face.ux, face.uy, face.length, face.offset_radius)
 
 
 @where("faces", otherwise=(0.0, 0.0))
-def wall_normal(state: State, w: int, k: int, i: int) -> tuple[float, float]:
+def face_normal(state: State, w: int, k: int, i: int) -> tuple[float, float]:
     """Return the unit normal, to ball `k`, of face `i`, which it touches; (0, 0) if there is none (i < 0)."""
     if i < 0:
         return 0.0, 0.0
@@ -31,7 +37,7 @@ def wall_normal(state: State, w: int, k: int, i: int) -> tuple[float, float]:
 
 
 @function
-def _is_level(ball: Record, flight: Flight, face: Record) -> bool:
+def _is_level_on_face(ball: Record, flight: Flight, face: Record) -> bool:
     """Whether a ball touches a wall and keeps doing so: it moves along it, and nothing pulls it off."""
     height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
     if abs(abs(height) - face.offset_radius) > ball.tolerance:
@@ -39,21 +45,21 @@ def _is_level(ball: Record, flight: Flight, face: Record) -> bool:
     rate = ball.vy * face.ux - ball.vx * face.uy
     if abs(rate) > 4.0 * ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy)):
         return False
-    return _is_pulled_along(flight, face)
+    return _is_pulled_along_face(flight, face)
 
 
 @where("ax", otherwise=True)
-def _is_pulled_along(flight: Flight, face: Record) -> bool:
+def _is_pulled_along_face(flight: Flight, face: Record) -> bool:
     return abs(flight.ay * face.ux - flight.ax * face.uy) <= PRESSING * (abs(flight.ax) + abs(flight.ay))
 
 
-def _no_surface(
+def _no_standing_surface(
     state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float
 ) -> tuple[float, int]:
     return horizon, -1
 
 
-@where("faces", otherwise=_no_surface)
+@where("faces", otherwise=_no_standing_surface)
 def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float) -> tuple[float, int]:
     """Return the earliest hit of a wall's straight part before `horizon` [s]: (duration, face), -1 for none.
 
@@ -65,36 +71,36 @@ def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: floa
         face = state.faces[scene, i]
         if is_off(state, w, face.element):
             continue
-        if is_sliding(ball) and (i == ball.contact or _is_level(ball, flight, face)):
+        if is_sliding(ball) and (i == ball.contact or _is_level_on_face(ball, flight, face)):
             continue
-        from_start, side = seen_from(flight, face.x, face.y), side_on(state.face_sides, w, k, i)
+        from_start, side = flight_seen_from(flight, face.x, face.y), side_on(state.face_sides, w, k, i)
         if is_one_way(state, scene, i):
-            t = facing_time(from_start, line_of(face), 1.0, side, ball.tolerance, best)
+            t = facing_time(from_start, face_line(face), 1.0, side, ball.tolerance, best)
         else:
-            t = face_time(from_start, line_of(face), side, ball.tolerance, best)
-        if t < best and not _slides_over(ball, flight, face, nx, ny, t):
+            t = face_time(from_start, face_line(face), side, ball.tolerance, best)
+        if t < best and not _slides_over_face_end(ball, flight, face, nx, ny, t):
             best, index = t, i
     return best, index
 
 
 @function
-def _slides_over(ball: Record, flight: Flight, face: Record, nx: float, ny: float, t: float) -> bool:
+def _slides_over_face_end(ball: Record, flight: Flight, face: Record, nx: float, ny: float, t: float) -> bool:
     """Whether a point that slides on a wall with normal (nx, ny) passes, after `t` seconds, an end beneath it."""
     if not is_sliding(ball) or face.offset_radius > 0.0:
         return False
-    x, y = place_after(flight, t)
+    x, y = flight_place_after(flight, t)
     along = (x - face.x) * face.ux + (y - face.y) * face.uy
     rise = face.ux * nx + face.uy * ny
     return (along <= ball.tolerance and rise <= 0.0) or (along >= face.length - ball.tolerance and rise >= 0.0)
 
 
 @function
-def _slides_past(ball: Record, nx: float, ny: float, x: float, y: float, offset_radius: float) -> bool:
+def _slides_past_circle(ball: Record, nx: float, ny: float, x: float, y: float, offset_radius: float) -> bool:
     """Whether a ball that slides on a wall with normal (nx, ny) just touches a circle that has it at (x, y)."""
     return is_sliding(ball) and x * nx + y * ny >= offset_radius - ball.tolerance
 
 
-@where("circles", otherwise=_no_surface)
+@where("circles", otherwise=_no_standing_surface)
 def first_circle(
     state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float
 ) -> tuple[float, int]:
@@ -104,8 +110,8 @@ def first_circle(
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
     best, index = horizon, -1
-    left, right = swept(flight.x, flight.vx, flight.ax, horizon)
-    below, above = swept(flight.y, flight.vy, flight.ay, horizon)
+    left, right = swept_interval(flight.x, flight.vx, flight.ax, horizon)
+    below, above = swept_interval(flight.y, flight.vy, flight.ay, horizon)
     for i in range(state.scenes[scene].circles):
         circle = state.circles[scene, i]
         offset_radius = circle.offset_radius + ball.tolerance
@@ -117,8 +123,8 @@ def first_circle(
             or circle.y - offset_radius > above
         ):
             continue
-        seen = seen_from(flight, circle.x, circle.y)
-        if is_off(state, w, circle.element) or _slides_past(ball, nx, ny, seen.x, seen.y, circle.offset_radius):
+        seen = flight_seen_from(flight, circle.x, circle.y)
+        if is_off(state, w, circle.element) or _slides_past_circle(ball, nx, ny, seen.x, seen.y, circle.offset_radius):
             continue
         t = circle_time(seen, circle.offset_radius, ball.tolerance, best)
         if t < best:
@@ -126,13 +132,13 @@ def first_circle(
     return best, index
 
 
-@where("arcs", otherwise=_no_surface)
+@where("arcs", otherwise=_no_standing_surface)
 def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float) -> tuple[float, int]:
     """Return the earliest hit of an arc before `horizon` [s]; as `first_face`."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
     best, index = horizon, -1
-    left, right = swept(flight.x, flight.vx, flight.ax, horizon)
-    below, above = swept(flight.y, flight.vy, flight.ay, horizon)
+    left, right = swept_interval(flight.x, flight.vx, flight.ax, horizon)
+    below, above = swept_interval(flight.y, flight.vy, flight.ay, horizon)
     for i in range(state.scenes[scene].arcs):
         arc = state.arcs[scene, i]
         offset_radius = arc.outer + ball.tolerance
@@ -145,8 +151,8 @@ def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float
             continue
         if is_off(state, w, arc.element):
             continue
-        seen = seen_from(flight, arc.x, arc.y)
-        past = _slides_past(ball, nx, ny, seen.x, seen.y, arc.outer)
+        seen = flight_seen_from(flight, arc.x, arc.y)
+        past = _slides_past_circle(ball, nx, ny, seen.x, seen.y, arc.outer)
         t = arc_time(seen, arc, side_on(state.arc_sides, w, k, i), past, ball.tolerance, best)
         if t < best:
             best, index = t, i
@@ -166,7 +172,7 @@ def first_end(state: State, w: int, k: int, flight: Flight, horizon: float) -> t
     """
     ball = state.balls[w, k]
     if ball.contact >= 0:
-        t = _way_to_end(flight, state.faces[state.worlds[w].scene, ball.contact])
+        t = _way_to_face_end(flight, state.faces[state.worlds[w].scene, ball.contact])
         return (t, ball.contact) if t < horizon else (horizon, -1)
     return _first_end_of_point(state, w, k, flight, horizon)
 
@@ -179,23 +185,26 @@ def _first_end_of_point(state: State, w: int, k: int, flight: Flight, horizon: f
         return best, index
     for i in range(state.scenes[scene].faces):
         face = state.faces[scene, i]
-        if is_off(state, w, face.element) or not _is_level(ball, flight, face):
+        if is_off(state, w, face.element) or not _is_level_on_face(ball, flight, face):
             continue
-        from_start, line = seen_from(flight, face.x, face.y), line_of(face)
-        if not is_beside(line, from_start.x, from_start.y, ball.tolerance) or leaves_end(
+        from_start, line = flight_seen_from(flight, face.x, face.y), face_line(face)
+        if not is_beside_line(line, from_start.x, from_start.y, ball.tolerance) or leaves_line_end(
             from_start, line, ball.tolerance
         ):
             continue
-        t = _way_to_end(flight, face)
+        t = _way_to_face_end(flight, face)
         if t < best:
             best, index = t, i
     return best, index
 
 
 @function
-def _way_to_end(flight: Flight, face: Record) -> float:
+def _way_to_face_end(flight: Flight, face: Record) -> float:
     """Duration after which a ball that moves along a wall is at one of its ends; inf if it comes to none."""
     along = (flight.x - face.x) * face.ux + (flight.y - face.y) * face.uy
     rate = flight.vx * face.ux + flight.vy * face.uy
-    pull, back = acceleration_along(flight, face.ux, face.uy), acceleration_along(flight, -face.ux, -face.uy)
-    return min(falling_time(along, False, rate, pull), falling_time(face.length - along, False, -rate, back))
+    pull, back = (
+        flight_acceleration_along(flight, face.ux, face.uy),
+        flight_acceleration_along(flight, -face.ux, -face.uy),
+    )
+    return min(falling_root(along, False, rate, pull), falling_root(face.length - along, False, -rate, back))

@@ -5,16 +5,16 @@ import math
 from bounce_env.engine.compile.jit import Table, routine, where
 from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.detect.pairs import plan_pairs
-from bounce_env.engine.detect.schedule import plan_crossing, resolve_next
+from bounce_env.engine.detect.schedule import schedule_crossing, schedule_resolve
 from bounce_env.engine.memory.ledger import Surface, append_crossing, count_hit
 from bounce_env.engine.memory.records import FIELD_BORDER, LINE_SENSOR, OUT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.fields import accelerate
-from bounce_env.engine.motion.flight import flight_of, fly, place_after, velocity_after
+from bounce_env.engine.motion.flight import flight_of, flight_place_after, flight_velocity_after, fly_ball
 
 
 @routine
-def cross(state: State, w: int, k: int, ledger: Table) -> None:
+def cross_next(state: State, w: int, k: int, ledger: Table) -> None:
     """Process a crossing. The flight goes on as if there were nothing, unless it is a drain or changes the pull."""
     kind = state.balls[w, k].sensor_kind
     if kind == FIELD_BORDER:
@@ -30,7 +30,7 @@ def _cross_line(state: State, w: int, k: int, ledger: Table) -> None:
     ball = state.balls[w, k]
     sensor = state.sensors[state.worlds[w].scene, ball.sensor_index]
     state.sensor_sides[w, k, ball.sensor_index] = -state.sensor_sides[w, k, ball.sensor_index]
-    vx, vy = velocity_after(flight_of(state, ball), ball.sensor_after)
+    vx, vy = flight_velocity_after(flight_of(state, ball), ball.sensor_after)
     facing = 1.0 if vy * sensor.ux - vx * sensor.uy < 0.0 else -1.0
     surface = Surface(sensor.element, -facing * sensor.uy, facing * sensor.ux, 0.0, 0.0)
     _report_crossing(state, w, k, sensor.drain, surface, ledger)
@@ -41,7 +41,7 @@ def _enter_circle_sensor(state: State, w: int, k: int, ledger: Table) -> None:
     ball = state.balls[w, k]
     ring = state.circle_sensors[state.worlds[w].scene, ball.sensor_index]
     state.circle_sensor_sides[w, k, ball.sensor_index] = -1
-    x, y = place_after(flight_of(state, ball), ball.sensor_after)
+    x, y = flight_place_after(flight_of(state, ball), ball.sensor_after)
     dx, dy = x - ring.x, y - ring.y
     distance = math.sqrt(dx * dx + dy * dy)
     _report_crossing(state, w, k, ring.drain, Surface(ring.element, dx / distance, dy / distance, 0.0, 0.0), ledger)
@@ -53,16 +53,16 @@ def _report_crossing(state: State, w: int, k: int, drain: int, surface: Surface,
     ball = state.balls[w, k]
     flight, after = flight_of(state, ball), ball.sensor_after
     count_hit(state, w, surface.element)
-    x, y = place_after(flight, after)
-    vx, vy = velocity_after(flight, after)
+    x, y = flight_place_after(flight, after)
+    vx, vy = flight_velocity_after(flight, after)
     append_crossing(ledger, state.worlds[w], ball, k, surface, x, y, vx, vy)
     if drain:
-        fly(ball, flight, after, ball.next_hi, ball.next_lo)
+        fly_ball(ball, flight, after, ball.next_hi, ball.next_lo)
         ball.status = OUT
         ball.next_hi, ball.next_lo = math.inf, 0.0
         plan_pairs(state, w, k)
     else:
-        plan_crossing(state, w, k, after, ball.sensor_kind, ball.sensor_index)
+        schedule_crossing(state, w, k, after, ball.sensor_kind, ball.sensor_index)
 
 
 @where("field_edges")
@@ -73,9 +73,9 @@ def _cross_field_edge(state: State, w: int, k: int) -> None:
     gx, gy = ball.gx, ball.gy
     accelerate(state, w, k)
     if ball.gx == gx and ball.gy == gy:
-        plan_crossing(state, w, k, after, FIELD_BORDER, index)
+        schedule_crossing(state, w, k, after, FIELD_BORDER, index)
         return
     new_gx, new_gy = ball.gx, ball.gy
     end_flight(state, w, k, after, ball.next_hi, ball.next_lo)
     ball.gx, ball.gy = new_gx, new_gy
-    resolve_next(ball)
+    schedule_resolve(ball)

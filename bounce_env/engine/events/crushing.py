@@ -3,10 +3,10 @@
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.contact.touching import on_capsule
+from bounce_env.engine.contact.touching import nearest_on_capsule
 from bounce_env.engine.detect.pairs import plan_pairs
-from bounce_env.engine.detect.parts import plan_zones
-from bounce_env.engine.detect.schedule import plan_parts, resolve_next
+from bounce_env.engine.detect.parts import plan_part_zones
+from bounce_env.engine.detect.schedule import schedule_parts, schedule_resolve
 from bounce_env.engine.events.flights import disturb
 from bounce_env.engine.events.part_stops import (
     block_part,
@@ -21,7 +21,13 @@ from bounce_env.engine.memory.lookup import side_of_part
 from bounce_env.engine.memory.records import CRUSH, CRUSHED, HELD, OK
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of
-from bounce_env.engine.motion.parts import MovingPart, core_at, kept_offset, moving_part, surface_velocity
+from bounce_env.engine.motion.parts import (
+    MovingPart,
+    kept_part_offset,
+    moving_part,
+    part_core_at,
+    part_surface_velocity,
+)
 from bounce_env.engine.tolerances import CLEARANCE, ULPS_OF_SPEED
 
 
@@ -34,9 +40,9 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
     ball, world = state.balls[w, k], state.worlds[w]
     m = ball.struck
     motion, shape = state.motions[w, m], state.parts[world.scene, m]
-    if turns_back(motion, shape, kept_offset(motion, shape, world.time_hi, world.time_lo)):
+    if turns_back(motion, shape, kept_part_offset(motion, shape, world.time_hi, world.time_lo)):
         ball.status, ball.struck, ball.squeezes = OK, -1, 0
-        resolve_next(ball)
+        schedule_resolve(ball)
     else:
         vx, vy = ball.vx, ball.vy
         ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
@@ -45,8 +51,8 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
         surface = Surface(shape.element, ball.nx, ball.ny, ball.sux, ball.suy)
         append_contact(ledger, world, ball, k, CRUSH, surface, vx, vy)
         ball.hit_after, ball.end_after, ball.sensor_after = math.inf, math.inf, math.inf
-        plan_zones(state, w, k, flight_of(state, ball), 0.0)
-        plan_parts(state, w, k)
+        plan_part_zones(state, w, k, flight_of(state, ball), 0.0)
+        schedule_parts(state, w, k)
     plan_pairs(state, w, k)
     block_part(state, w, m, ledger)
 
@@ -81,15 +87,15 @@ def meet_crushed(state: State, w: int, k: int, m: int, ledger: Table) -> None:
         block_part(state, w, m, ledger)
     else:
         ball.hi, ball.lo = world.time_hi, world.time_lo
-        plan_parts(state, w, k)
+        schedule_parts(state, w, k)
 
 
 @function
 def _approach_to_crushed(ball: Record, part: MovingPart, side: int, hi: float, lo: float) -> tuple[float, float]:
     """How far [m] a part is from a crushed ball at an instant, and how fast [m/s] it closes; 0 within rounding."""
-    core = core_at(part, hi, lo)
-    nx, ny, distance, nearest = on_capsule(core, ball.x, ball.y, side, ball.tolerance)
-    vx, vy = surface_velocity(part, core, nearest * core.ux, nearest * core.uy)
+    core = part_core_at(part, hi, lo)
+    nx, ny, distance, nearest = nearest_on_capsule(core, ball.x, ball.y, side, ball.tolerance)
+    vx, vy = part_surface_velocity(part, core, nearest * core.ux, nearest * core.uy)
     closing = vx * nx + vy * ny
     return distance - part.shape.offset_radius, closing if abs(closing) > ULPS_OF_SPEED * (abs(vx) + abs(vy)) else 0.0
 

@@ -5,7 +5,7 @@ from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.sides import update_crossing_sides, update_sides
 from bounce_env.engine.contact.start_sides import set_initial_sides
 from bounce_env.engine.detect.pairs import plan_pairs
-from bounce_env.engine.detect.schedule import resolve_next
+from bounce_env.engine.detect.schedule import schedule_resolve
 from bounce_env.engine.memory.records import CRUSHED, FLYING, OK, OUT, RESOLVE
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.fields import accelerate
@@ -29,7 +29,7 @@ def place(state: State, w: int, k: int, x: float, y: float, vx: float, vy: float
     accelerate(state, w, k)
     ball.ax, ball.ay = ball.gx, ball.gy
     _enter_zones(state, w, k)
-    resolve_next(ball)
+    schedule_resolve(ball)
     plan_pairs(state, w, k)
 
 
@@ -55,7 +55,7 @@ def disturb(state: State, w: int, k: int, drag: float, dvx: float, dvy: float) -
     update_sides(state, w, k, start, t)
     update_crossing_sides(state, w, k)
     ball.vx, ball.vy = drag * ball.vx + dvx, drag * ball.vy + dvy
-    resolve_next(ball)
+    schedule_resolve(ball)
 
 
 @where("drags")

@@ -7,22 +7,22 @@ these before parts, and each in its order.
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.contact.arrival import end_flight, snap
+from bounce_env.engine.contact.arrival import end_flight, snap_to_hit
 from bounce_env.engine.contact.jams import forget_meetings
 from bounce_env.engine.contact.pairs import collide
 from bounce_env.engine.contact.resolve import resolve
 from bounce_env.engine.contact.sides import update_sides
 from bounce_env.engine.detect.pairs import first_pair
-from bounce_env.engine.detect.parts import plan_zones
-from bounce_env.engine.detect.schedule import plan_parts
-from bounce_env.engine.events.crossings import cross
+from bounce_env.engine.detect.parts import plan_part_zones
+from bounce_env.engine.detect.schedule import schedule_parts
+from bounce_env.engine.events.crossings import cross_next
 from bounce_env.engine.events.crushing import crush, meet_crushed
 from bounce_env.engine.events.part_stops import reset_parts, stop_part
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, FLYING, NEXT_HIT, NEXT_SENSOR, NEXT_ZONE, OK, RESOLVE
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of
 from bounce_env.engine.motion.instant import before, since
-from bounce_env.engine.motion.parts import offset_at, stop_instant
+from bounce_env.engine.motion.parts import part_offset_at, part_stop_instant
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
 
 # How a run of the loop ends.
@@ -75,36 +75,36 @@ def _next_event(state: State, w: int, until_hi: float, until_lo: float) -> tuple
     pair_hi, pair_lo, one, other = first_pair(state, w, until_hi, until_lo)
     if before(pair_hi, pair_lo, hi, lo):
         hi, lo, what, i, j = pair_hi, pair_lo, OF_PAIR, one, other
-    m, stop_hi, stop_lo = _first_stop(state, w, until_hi, until_lo)
+    m, stop_hi, stop_lo = _first_part_stop(state, w, until_hi, until_lo)
     if before(stop_hi, stop_lo, hi, lo):
         hi, lo, what, i = stop_hi, stop_lo, OF_PART, m
     return hi, lo, what, i, j
 
 
 @where("parts", otherwise=(-1, math.inf, 0.0))
-def _first_stop(state: State, w: int, until_hi: float, until_lo: float) -> tuple[int, float, float]:
+def _first_part_stop(state: State, w: int, until_hi: float, until_lo: float) -> tuple[int, float, float]:
     """The part that first comes to a stop up to an instant, and when: (part, hi, lo), part -1 if none does."""
     scene = state.worlds[w].scene
     hi, lo, first = math.inf, 0.0, -1
     for m in range(state.motions.shape[1]):
         motion, shape = state.motions[w, m], state.parts[scene, m]
-        if _moves_until(motion, shape, until_hi, until_lo):
+        if _part_moves_until(motion, shape, until_hi, until_lo):
             continue
-        stop_hi, stop_lo = stop_instant(motion, shape)
+        stop_hi, stop_lo = part_stop_instant(motion, shape)
         if not before(until_hi, until_lo, stop_hi, stop_lo) and before(stop_hi, stop_lo, hi, lo):
             hi, lo, first = stop_hi, stop_lo, m
     return first, hi, lo
 
 
 @function
-def _moves_until(motion: Record, shape: Record, hi: float, lo: float) -> bool:
+def _part_moves_until(motion: Record, shape: Record, hi: float, lo: float) -> bool:
     """Whether the part surely comes to no stop up to an instant: most are told so without a division.
 
     The margin covers the rounding of the two ways; within it the stop's instant decides. Asked of both stops alike,
     since which one lies ahead is a coin's toss to the processor.
     """
     margin = UNSURE * shape.span
-    return motion.velocity == 0.0 or margin < offset_at(motion, hi, lo) < shape.span - margin
+    return motion.velocity == 0.0 or margin < part_offset_at(motion, hi, lo) < shape.span - margin
 
 
 @function
@@ -113,13 +113,13 @@ def is_calm(state: State, w: int, until_hi: float, until_lo: float) -> bool:
     for k in range(state.balls.shape[1]):
         if not before(until_hi, until_lo, state.balls[w, k].next_hi, state.balls[w, k].next_lo):
             return False
-    return first_pair(state, w, until_hi, until_lo)[2] < 0 and _all_move_until(state, w, until_hi, until_lo)
+    return first_pair(state, w, until_hi, until_lo)[2] < 0 and _all_parts_move_until(state, w, until_hi, until_lo)
 
 
 @where("parts", otherwise=True)
-def _all_move_until(state: State, w: int, until_hi: float, until_lo: float) -> bool:
+def _all_parts_move_until(state: State, w: int, until_hi: float, until_lo: float) -> bool:
     for m in range(state.motions.shape[1]):
-        if not _moves_until(state.motions[w, m], state.parts[state.worlds[w].scene, m], until_hi, until_lo):
+        if not _part_moves_until(state.motions[w, m], state.parts[state.worlds[w].scene, m], until_hi, until_lo):
             return False
     return True
 
@@ -136,11 +136,11 @@ def _ball_event(state: State, w: int, k: int, ledger: Table) -> int:
     """Process the ball's next event; returns how many events it counts for in the budget."""
     ball = state.balls[w, k]
     if ball.next_kind == NEXT_ZONE:
-        plan_zones(state, w, k, flight_of(state, ball), ball.zone_after)
-        plan_parts(state, w, k)
+        plan_part_zones(state, w, k, flight_of(state, ball), ball.zone_after)
+        schedule_parts(state, w, k)
         return 0
     if ball.next_kind == NEXT_SENSOR:
-        cross(state, w, k, ledger)
+        cross_next(state, w, k, ledger)
         return 1
     if ball.status == CRUSHED:
         meet_crushed(state, w, k, ball.part_index, ledger)
@@ -159,7 +159,7 @@ def _ball_hits(state: State, w: int, k: int, ledger: Table) -> None:
     t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
     start = flight_of(state, ball)
     end_flight(state, w, k, t, ball.next_hi, ball.next_lo)
-    snap(state, w, k)
+    snap_to_hit(state, w, k)
     update_sides(state, w, k, start, t)
     at_once = _is_over_at_once(ball, t) and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
     bounces = state.worlds[w].bounces
@@ -186,7 +186,7 @@ def restart(state: State, w: int) -> None:
     forget_meetings(state, w)
     clear_hits(state, w)
     _cool_down(state, w)
-    _switch_on(state, w)
+    _enable_all(state, w)
     reset_parts(state, w)
 
 
@@ -197,7 +197,7 @@ def _cool_down(state: State, w: int) -> None:
 
 
 @where("disabled")
-def _switch_on(state: State, w: int) -> None:
+def _enable_all(state: State, w: int) -> None:
     for element in range(state.disabled.shape[1]):
         state.disabled[w, element] = 0
 

@@ -5,21 +5,26 @@ against what they touch, and every ball that it can reach searches it anew.
 """
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.detect.schedule import plan_parts
+from bounce_env.engine.detect.schedule import schedule_parts
 from bounce_env.engine.events.flights import disturb
 from bounce_env.engine.memory.ledger import append_stop
 from bounce_env.engine.memory.lookup import side_of_part
 from bounce_env.engine.memory.records import CRUSHED, OUT
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.dragged_wall import move_ends, next_stop_of_ends, set_ends_off, stop_ends
+from bounce_env.engine.motion.dragged_wall import (
+    move_dragged_ends,
+    set_dragged_ends_off,
+    stop_dragged_ends,
+    take_next_stop_of_dragged_ends,
+)
 from bounce_env.engine.motion.parts import (
     MovingPart,
-    core_at,
-    is_dragged,
-    kept_offset,
+    is_dragged_part,
+    kept_part_offset,
     moving_part,
-    stop_instant,
-    surface_velocity,
+    part_core_at,
+    part_stop_instant,
+    part_surface_velocity,
 )
 from bounce_env.engine.tolerances import CLEARANCE
 
@@ -27,7 +32,7 @@ from bounce_env.engine.tolerances import CLEARANCE
 @function
 def set_part_off(motion: Record, shape: Record, world: Record, velocity: float) -> None:
     """Start a commanded motion from the part's place: against a stop it stands, or turns back if it is a shuttle."""
-    motion.offset = kept_offset(motion, shape, world.time_hi, world.time_lo)
+    motion.offset = kept_part_offset(motion, shape, world.time_hi, world.time_lo)
     motion.hi, motion.lo = world.time_hi, world.time_lo
     motion.command = velocity
     back = -velocity if shape.shuttle > 0.0 else 0.0
@@ -43,7 +48,7 @@ def set_part_off(motion: Record, shape: Record, world: Record, velocity: float) 
 def resume_part(state: State, w: int, m: int) -> None:
     """Let part `m` move, from now on, as it was last commanded to."""
     part, world = moving_part(state, w, m), state.worlds[w]
-    if is_dragged(part):
+    if is_dragged_part(part):
         _set_wall_off(state, w, m)
     else:
         set_part_off(part.motion, part.shape, world, part.motion.command)
@@ -52,7 +57,9 @@ def resume_part(state: State, w: int, m: int) -> None:
 @where("ends")
 def _set_wall_off(state: State, w: int, m: int) -> None:
     world = state.worlds[w]
-    set_ends_off(state.motions[w, m], state.ends[w, m], state.drag_limits[world.scene, m], world.time_hi, world.time_lo)
+    set_dragged_ends_off(
+        state.motions[w, m], state.ends[w, m], state.drag_limits[world.scene, m], world.time_hi, world.time_lo
+    )
 
 
 @function
@@ -64,8 +71,8 @@ def hold_part_still(part: MovingPart) -> None:
 
 @where("ends")
 def _hold_ends(part: MovingPart) -> None:
-    if is_dragged(part):
-        stop_ends(part.motion, part.ends)
+    if is_dragged_part(part):
+        stop_dragged_ends(part.motion, part.ends)
 
 
 @where("parts")
@@ -94,7 +101,7 @@ def replan_part(state: State, w: int, m: int) -> None:
     """Search part `m` anew for every ball that it can reach: it has changed its speed."""
     for k in range(state.balls.shape[1]):
         if state.zones[w, k, m].inside and state.balls[w, k].status != OUT:
-            plan_parts(state, w, k)
+            schedule_parts(state, w, k)
 
 
 @function
@@ -112,7 +119,7 @@ def end_rides(state: State, w: int, m: int) -> None:
 def stop_part(state: State, w: int, m: int, ledger: Table) -> None:
     """Let part `m` come to a stop now: it stands there, or turns back if it is a shuttle."""
     motion, shape = state.motions[w, m], state.parts[state.worlds[w].scene, m]
-    hi, lo = stop_instant(motion, shape)
+    hi, lo = part_stop_instant(motion, shape)
     _halt_part(state, w, m, shape.span if motion.velocity > 0.0 else 0.0, False, hi, lo, ledger)
 
 
@@ -121,7 +128,9 @@ def block_part(state: State, w: int, m: int, ledger: Table) -> None:
     """Let part `m` stop now, against a ball that is crushed."""
     world = state.worlds[w]
     hi, lo = world.time_hi, world.time_lo
-    _halt_part(state, w, m, kept_offset(state.motions[w, m], state.parts[world.scene, m], hi, lo), True, hi, lo, ledger)
+    _halt_part(
+        state, w, m, kept_part_offset(state.motions[w, m], state.parts[world.scene, m], hi, lo), True, hi, lo, ledger
+    )
 
 
 @function
@@ -130,7 +139,7 @@ def _halt_part(state: State, w: int, m: int, offset: float, blocked: bool, hi: f
     end_rides(state, w, m)
     _release_caught(state, w, m)
     part = moving_part(state, w, m)
-    if is_dragged(part):
+    if is_dragged_part(part):
         _halt_wall(state, w, m, blocked, hi, lo, ledger)
     else:
         _halt_capsule(state, w, part, offset, hi, lo, ledger)
@@ -158,15 +167,15 @@ def _halt_capsule(state: State, w: int, part: MovingPart, offset: float, hi: flo
     """Let a part stop at `offset`: it stands there, or turns back if it is a shuttle that has room for it."""
     motion, shape = part.motion, part.shape
     motion.hi, motion.lo, motion.offset = hi, lo, offset
-    core = core_at(part, hi, lo)
+    core = part_core_at(part, hi, lo)
     # Of a part that turns the ledger tells of its tip, of one that slides of its middle.
     rx, ry = (core.front * core.ux, core.front * core.uy) if part.turn != 0 else (0.0, 0.0)
-    before = surface_velocity(part, core, rx, ry)
+    before = part_surface_velocity(part, core, rx, ry)
     turns = turns_back(motion, shape, offset)
     motion.velocity = -motion.velocity if turns else 0.0
     if turns:
         motion.command = motion.velocity
-    after = surface_velocity(part, core, rx, ry)
+    after = part_surface_velocity(part, core, rx, ry)
     append_stop(ledger, state.worlds[w], shape.element, hi, (core.x + rx, core.y + ry), before, after)
 
 
@@ -180,9 +189,9 @@ def _halt_wall(state: State, w: int, m: int, blocked: bool, hi: float, lo: float
     limits, element = state.drag_limits[world.scene, m], state.parts[world.scene, m].element
     start, end = (ends.vx0, ends.vy0), (ends.vx1, ends.vy1)
     if blocked:
-        move_ends(motion, ends, limits, hi, lo)
-        stop_ends(motion, ends)
+        move_dragged_ends(motion, ends, limits, hi, lo)
+        stop_dragged_ends(motion, ends)
     else:
-        next_stop_of_ends(motion, ends, limits, hi, lo)
+        take_next_stop_of_dragged_ends(motion, ends, limits, hi, lo)
     append_stop(ledger, world, element, hi, (ends.x0, ends.y0), start, (ends.vx0, ends.vy0))
     append_stop(ledger, world, element, hi, (ends.x1, ends.y1), end, (ends.vx1, ends.vy1))

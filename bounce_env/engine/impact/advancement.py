@@ -10,14 +10,14 @@ from bounce_env.engine.compile.jit import function
 
 
 @function
-def open_for(gap: float, rate: float, bound: float) -> float:
+def advancement_step(gap: float, rate: float, bound: float) -> float:
     """Return how long [s] a gap surely stays open: that root, for `bound` > 0, in the form in which nothing cancels."""
     root = math.sqrt(rate * rate + 2.0 * bound * gap)
     return 2.0 * gap / (root - rate) if rate < 0.0 else (rate + root) / bound
 
 
 @function
-def closed_after(gap: float, rate: float, bound: float) -> float:
+def advancement_to_closing(gap: float, rate: float, bound: float) -> float:
     """Return how long [s] a gap that counts as a touch, and closes, takes to close; 0 where it is deeper than it began.
 
     Going back from there would end where nothing closes yet.

@@ -8,22 +8,16 @@ import math
 from typing import Any, NamedTuple
 
 from bounce_env.engine.compile.jit import Record, function, routine, where
+from bounce_env.engine.impact.grazing import bending, grazes, slow_on_circle
 from bounce_env.engine.impact.quartic import (
-    distance_polynomial,
-    monotone_borders,
+    distance_quartic,
+    quartic_monotone_borders,
+    quartic_root_between,
     quartic_value,
-    root_between,
-    without_root_at_zero,
+    quartic_without_root_at_zero,
 )
 from bounce_env.engine.memory.records import CLOSED, MINOR
-from bounce_env.engine.motion.flight import (
-    Flight,
-    bending,
-    flight_after,
-    grazes,
-    place_after,
-    slow_on_circle,
-)
+from bounce_env.engine.motion.flight import Flight, flight_after, flight_place_after
 from bounce_env.engine.tolerances import PRESSING, WEIGHTLESS
 
 
@@ -35,7 +29,7 @@ class Circle(NamedTuple):
 
 
 @function
-def is_in_span(arc: Any, dx: float, dy: float, tolerance: float) -> bool:
+def is_in_arc_span(arc: Any, dx: float, dy: float, tolerance: float) -> bool:
     """Return whether the point at (dx, dy) [m] from the centre lies beside the arc, ends included within a tolerance.
 
     `arc` is an ARC, or None for a circle that is no arc.
@@ -60,21 +54,23 @@ def arc_time(flight: Flight, arc: Record, side: int, inside_only: bool, toleranc
     """
     t = math.inf
     if not inside_only:
-        t = crossing_time(flight, arc, Circle(arc.outer, -1.0), side != -1, tolerance, -1.0, horizon)
+        t = arc_crossing_time(flight, arc, Circle(arc.outer, -1.0), side != -1, tolerance, -1.0, horizon)
     if arc.inner > 0.0:
         end = min(t, horizon)
-        t = min(t, crossing_time(flight, arc, Circle(arc.inner, 1.0), side != 1, tolerance, -1.0, end))
+        t = min(t, arc_crossing_time(flight, arc, Circle(arc.inner, 1.0), side != 1, tolerance, -1.0, end))
     return t
 
 
 @function
-def entry_time(flight: Flight, radius: float, outside: bool, tolerance: float, after: float, horizon: float) -> float:
+def arc_entry_time(
+    flight: Flight, radius: float, outside: bool, tolerance: float, after: float, horizon: float
+) -> float:
     """Return when a point next enters a circle about the origin, after `after` [s] and before `horizon`, or inf."""
-    return crossing_time(flight, None, Circle(radius, -1.0), outside, tolerance, after, horizon)
+    return arc_crossing_time(flight, None, Circle(radius, -1.0), outside, tolerance, after, horizon)
 
 
 @routine
-def crossing_time(
+def arc_crossing_time(
     flight: Flight, arc: Any, circle: Circle, armed: bool, tolerance: float, after: float, horizon: float
 ) -> float:
     """Return when the distance from the centre next crosses that of the circle beside the arc.
@@ -87,8 +83,8 @@ def crossing_time(
     touching = abs(gap) <= tolerance
     approach = circle.sense * (flight.x * flight.vx + flight.y * flight.vy)
     slow = slow_on_circle(flight, circle.offset_radius, tolerance) * distance
-    if touching and armed and approach > slow and after < 0.0 and is_in_span(arc, flight.x, flight.y, tolerance):
-        wait = _until_nearest(flight, circle.sense, tolerance)
+    if touching and armed and approach > slow and after < 0.0 and is_in_arc_span(arc, flight.x, flight.y, tolerance):
+        wait = _time_to_nearest_on_arc(flight, circle.sense, tolerance)
         return wait if wait > 0.0 else max(gap, 0.0) * distance / approach
     still = touching and abs(approach) <= slow
     if (
@@ -96,14 +92,14 @@ def crossing_time(
         and armed
         and after < 0.0
         and _sinks_into_arc(flight, circle.sense)
-        and is_in_span(arc, flight.x, flight.y, tolerance)
+        and is_in_arc_span(arc, flight.x, flight.y, tolerance)
     ):
         return 0.0
     return _arc_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
 
 
 @function
-def _until_nearest(flight: Flight, sense: float, tolerance: float) -> float:
+def _time_to_nearest_on_arc(flight: Flight, sense: float, tolerance: float) -> float:
     """How long [s] until a point that touches a circle is nearest, if it does so in passing (see `grazes`); else 0."""
     distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
     closing = sense * (flight.x * flight.vx + flight.y * flight.vy) / distance
@@ -114,10 +110,10 @@ def _until_nearest(flight: Flight, sense: float, tolerance: float) -> float:
 
 
 @function
-def _touches_at(flight: Flight, arc: Any, offset_radius: float, t: float, tolerance: float) -> bool:
+def _touches_arc_at(flight: Flight, arc: Any, offset_radius: float, t: float, tolerance: float) -> bool:
     """Whether a ball touches after `t` seconds, beside the arc."""
-    x, y = place_after(flight, t)
-    return abs(math.sqrt(x * x + y * y) - offset_radius) <= tolerance and is_in_span(arc, x, y, tolerance)
+    x, y = flight_place_after(flight, t)
+    return abs(math.sqrt(x * x + y * y) - offset_radius) <= tolerance and is_in_arc_span(arc, x, y, tolerance)
 
 
 @function
@@ -134,7 +130,7 @@ def _sinks_into_arc(flight: Flight, sense: float) -> bool:
 
 
 @function
-def _straight_crossing(
+def _straight_arc_crossing(
     flight: Flight,
     arc: Any,
     circle: Circle,
@@ -165,13 +161,13 @@ def _straight_crossing(
         t = rest / (root - half) if half < 0.0 else -(root + half) / square
     if touching and t * square <= root:  # the root at the start, of which the touch has been told
         return math.inf
-    t += _until_nearest(Flight(x + vx * t, y + vy * t, vx, vy, None, None), circle.sense, tolerance)
-    if t < 0.0 or t <= after or t > horizon or not is_in_span(arc, x + vx * t, y + vy * t, tolerance):
+    t += _time_to_nearest_on_arc(Flight(x + vx * t, y + vy * t, vx, vy, None, None), circle.sense, tolerance)
+    if t < 0.0 or t <= after or t > horizon or not is_in_arc_span(arc, x + vx * t, y + vy * t, tolerance):
         return math.inf
     return t
 
 
-@where("ax", otherwise=_straight_crossing)
+@where("ax", otherwise=_straight_arc_crossing)
 def _arc_crossing(
     flight: Flight,
     arc: Any,
@@ -183,12 +179,12 @@ def _arc_crossing(
     horizon: float,
 ) -> float:
     if abs(flight.ax) + abs(flight.ay) < WEIGHTLESS:
-        return _straight_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
-    return _curved_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
+        return _straight_arc_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
+    return _curved_arc_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
 
 
 @function
-def _curved_crossing(
+def _curved_arc_crossing(
     flight: Flight,
     arc: Any,
     circle: Circle,
@@ -200,25 +196,25 @@ def _curved_crossing(
 ) -> float:
     """On a parabola: all crossings in order, up to the first beside the arc."""
     offset_radius, sense = circle
-    c = distance_polynomial(flight, offset_radius)
+    c = distance_quartic(flight, offset_radius)
     if touching:
         # What is left of a gap is no way to go: the hit is where the ball is as near again.
-        c, offset_radius = without_root_at_zero(c), math.sqrt(flight.x * flight.x + flight.y * flight.y)
+        c, offset_radius = quartic_without_root_at_zero(c), math.sqrt(flight.x * flight.x + flight.y * flight.y)
     if still:
-        c = without_root_at_zero(c)
-    borders = monotone_borders(c, horizon)
+        c = quartic_without_root_at_zero(c)
+    borders = quartic_monotone_borders(c, horizon)
     for i in range(4):
         start, end = borders[i], borders[i + 1]
         if not (sense * quartic_value(c, start) < 0.0 <= sense * quartic_value(c, end)):
             turns = sense < 0.0 and not touching and start < end < horizon and end > after
-            if turns and _touches_at(flight, arc, offset_radius, end, tolerance):
+            if turns and _touches_arc_at(flight, arc, offset_radius, end, tolerance):
                 return end
             continue
-        t = root_between(c, start, end)
+        t = quartic_root_between(c, start, end)
         now = flight_after(flight, t)
         distance = math.sqrt(now.x * now.x + now.y * now.y)
         rate = (now.x * now.vx + now.y * now.vy) / distance
-        wait = _until_nearest(now, sense, tolerance)
+        wait = _time_to_nearest_on_arc(now, sense, tolerance)
         if wait > 0.0:
             t += wait
         elif sense * rate > 0.0:
@@ -227,7 +223,7 @@ def _curved_crossing(
             step = (distance - offset_radius) / rate
             if abs(step * bending(now)) <= abs(rate):
                 t = min(max(t - step, start), end)
-        x, y = place_after(flight, t)
-        if t > after and is_in_span(arc, x, y, tolerance):
+        x, y = flight_place_after(flight, t)
+        if t > after and is_in_arc_span(arc, x, y, tolerance):
             return t
     return math.inf

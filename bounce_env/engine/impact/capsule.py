@@ -5,7 +5,7 @@ import math
 from bounce_env.engine.compile.jit import routine
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.impact.line import Line, face_time
-from bounce_env.engine.motion.flight import Flight, seen_from
+from bounce_env.engine.motion.flight import Flight, flight_seen_from
 from bounce_env.engine.motion.parts import Core
 
 
@@ -15,8 +15,8 @@ def capsule_time(flight: Flight, core: Core, offset_radius: float, tolerance: fl
 
     offset_radius: the capsule's radius plus the ball's [m].
     """
-    back = seen_from(flight, core.back * core.ux, core.back * core.uy)
-    front = seen_from(flight, core.front * core.ux, core.front * core.uy)
+    back = flight_seen_from(flight, core.back * core.ux, core.back * core.uy)
+    front = flight_seen_from(flight, core.front * core.ux, core.front * core.uy)
     t = face_time(back, Line(core.ux, core.uy, core.front - core.back, offset_radius), 0, tolerance, horizon)
     t = min(t, circle_time(back, offset_radius, tolerance, min(t, horizon)))
     t = min(t, circle_time(front, offset_radius, tolerance, min(t, horizon)))

@@ -8,18 +8,10 @@ or inf.
 import math
 
 from bounce_env.engine.compile.jit import function, routine, where
-from bounce_env.engine.impact.advancement import open_for
-from bounce_env.engine.impact.arc import Circle, crossing_time
-from bounce_env.engine.motion.flight import (
-    Flight,
-    bending,
-    flight_after,
-    grazes,
-    moved,
-    slow_on_circle,
-    sped,
-    swept,
-)
+from bounce_env.engine.impact.advancement import advancement_step
+from bounce_env.engine.impact.arc import Circle, arc_crossing_time
+from bounce_env.engine.impact.grazing import bending, grazes, slow_on_circle
+from bounce_env.engine.motion.flight import Flight, coordinate_after, flight_after, speed_after, swept_interval
 from bounce_env.engine.tolerances import SEARCH_STEPS, STANDING, WEIGHTLESS
 
 
@@ -66,14 +58,18 @@ def curved_circle_time(flight: Flight, offset_radius: float, tolerance: float, h
     x, y, vx, vy, ax, ay = flight
     t = 0.0
     if ax == 0.0:
-        t, end = passing_times(x, vx, offset_radius + tolerance)
+        t, end = times_near_circle(x, vx, offset_radius + tolerance)
         horizon = min(horizon, end)
-        if not comes_near(moved(y, vy, ay, t), sped(vy, ay, t), ay, horizon - t, offset_radius + tolerance):
+        if not comes_near_circle(
+            coordinate_after(y, vy, ay, t), speed_after(vy, ay, t), ay, horizon - t, offset_radius + tolerance
+        ):
             return math.inf
     elif ay == 0.0:
-        t, end = passing_times(y, vy, offset_radius + tolerance)
+        t, end = times_near_circle(y, vy, offset_radius + tolerance)
         horizon = min(horizon, end)
-        if not comes_near(moved(x, vx, ax, t), sped(vx, ax, t), ax, horizon - t, offset_radius + tolerance):
+        if not comes_near_circle(
+            coordinate_after(x, vx, ax, t), speed_after(vx, ax, t), ax, horizon - t, offset_radius + tolerance
+        ):
             return math.inf
     bound = math.sqrt(ax * ax + ay * ay)
     away = 0.0
@@ -97,15 +93,15 @@ def curved_circle_time(flight: Flight, offset_radius: float, tolerance: float, h
                 return max(t + 2.0 * gap / (root - rate), 0.0)
             rate = max(rate, 0.0)
             gap = max(gap, 0.0)
-        t += open_for(gap, rate, bound)
+        t += advancement_step(gap, rate, bound)
         if t > horizon:
             return math.inf
     # Along the circle's tangent from a touch the gap hardly opens, and each step is but a small one.
-    return crossing_time(flight, None, Circle(offset_radius, -1.0), True, tolerance, -1.0, horizon)
+    return arc_crossing_time(flight, None, Circle(offset_radius, -1.0), True, tolerance, -1.0, horizon)
 
 
 @function
-def passing_times(x: float, v: float, offset_radius: float) -> tuple[float, float]:
+def times_near_circle(x: float, v: float, offset_radius: float) -> tuple[float, float]:
     """Return the durations between which |x + v t| <= offset_radius, as (from, to) with from >= 0; from > to: never."""
     if abs(v) < STANDING:
         return 0.0, math.inf if abs(x) <= offset_radius else -1.0
@@ -115,9 +111,9 @@ def passing_times(x: float, v: float, offset_radius: float) -> tuple[float, floa
 
 
 @function
-def comes_near(x: float, v: float, a: float, t: float, offset_radius: float) -> bool:
+def comes_near_circle(x: float, v: float, a: float, t: float, offset_radius: float) -> bool:
     """Return whether x + v t + a t^2 / 2 comes within `offset_radius` of 0 in `t` seconds; a `t` < 0 is never."""
     if t < 0.0:
         return False
-    low, high = swept(x, v, a, t)
+    low, high = swept_interval(x, v, a, t)
     return low <= offset_radius and high >= -offset_radius

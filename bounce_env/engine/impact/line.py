@@ -9,8 +9,8 @@ import math
 from typing import NamedTuple
 
 from bounce_env.engine.compile.jit import function
-from bounce_env.engine.motion.flight import Flight, acceleration_along, place_after
-from bounce_env.engine.motion.roots import falling_time
+from bounce_env.engine.motion.flight import Flight, flight_acceleration_along, flight_place_after
+from bounce_env.engine.motion.roots import falling_root
 from bounce_env.engine.tolerances import CORNER, ULPS_OF_SPEED
 
 
@@ -41,21 +41,21 @@ def line_time(flight: Flight, line: Line, facing: float, side: float, tolerance:
             gap = min(gap, 0.0)
         elif rate > 0.0:
             gap = 0.0
-    return falling_time(gap, behind, rate, acceleration_along(flight, nx, ny))
+    return falling_root(gap, behind, rate, flight_acceleration_along(flight, nx, ny))
 
 
 @function
-def is_beside(line: Line, x: float, y: float, tolerance: float) -> bool:
+def is_beside_line(line: Line, x: float, y: float, tolerance: float) -> bool:
     """Return whether a point lies beside a wall, however far: neither before its start nor beyond its end."""
     along = x * line.ux + y * line.uy
     return -tolerance <= along <= line.length + tolerance
 
 
 @function
-def leaves_end(flight: Flight, line: Line, tolerance: float) -> bool:
+def leaves_line_end(flight: Flight, line: Line, tolerance: float) -> bool:
     """Return whether a ball slides off the end of a wall now: it still touches, but will be beside it when it falls."""
     slow = ULPS_OF_SPEED * (abs(flight.vx) + abs(flight.vy))
-    if not is_beside(line, flight.x, flight.y, tolerance):
+    if not is_beside_line(line, flight.x, flight.y, tolerance):
         return False
     if abs(abs(flight.y * line.ux - flight.x * line.uy) - line.offset_radius) > tolerance:
         return False
@@ -64,7 +64,7 @@ def leaves_end(flight: Flight, line: Line, tolerance: float) -> bool:
     along = flight.x * line.ux + flight.y * line.uy
     lean = flight.vx * line.ux + flight.vy * line.uy
     if abs(lean) <= slow:
-        lean = _pull_or(acceleration_along(flight, line.ux, line.uy), lean)
+        lean = _pull_or(flight_acceleration_along(flight, line.ux, line.uy), lean)
     return (along >= line.length - tolerance and lean > 0.0) or (along <= tolerance and lean < 0.0)
 
 
@@ -81,11 +81,11 @@ def facing_time(flight: Flight, line: Line, facing: float, side: float, toleranc
     -1, on which a ball of no radius is while it touches the wall; 0 for a disc, whose centre keeps its distance.
     """
     t = line_time(flight, line, facing, side, tolerance)
-    if t > horizon or t == math.inf or leaves_end(flight, line, tolerance):
+    if t > horizon or t == math.inf or leaves_line_end(flight, line, tolerance):
         return math.inf
     # The tolerance closes the joint between two walls for a ball of no radius; for a disc the end's circle takes over.
-    x, y = place_after(flight, t)
-    return t if is_beside(line, x, y, tolerance) else math.inf
+    x, y = flight_place_after(flight, t)
+    return t if is_beside_line(line, x, y, tolerance) else math.inf
 
 
 @function

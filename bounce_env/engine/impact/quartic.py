@@ -15,7 +15,7 @@ Coefficients = tuple[float, float, float, float, float]  # of t^0 to t^4
 
 
 @function
-def distance_polynomial(flight: Flight, offset_radius: float) -> Coefficients:
+def distance_quartic(flight: Flight, offset_radius: float) -> Coefficients:
     """Return |p(t)|^2 - offset_radius^2 of a flight p(t), as a polynomial in t."""
     x, y, vx, vy, ax, ay = flight
     distance = math.sqrt(x * x + y * y)
@@ -29,7 +29,7 @@ def distance_polynomial(flight: Flight, offset_radius: float) -> Coefficients:
 
 
 @function
-def without_root_at_zero(c: Coefficients) -> Coefficients:
+def quartic_without_root_at_zero(c: Coefficients) -> Coefficients:
     """Return the polynomial divided by t, its constant taken for zero: all crossings but the one at the start."""
     return c[1], c[2], c[3], c[4], 0.0
 
@@ -47,7 +47,7 @@ def quartic_slope(c: Coefficients, t: float) -> float:
 
 
 @function
-def inflections(c: Coefficients, horizon: float) -> tuple[float, float]:
+def quartic_inflections(c: Coefficients, horizon: float) -> tuple[float, float]:
     """Return the roots of the second derivative, in order and cut to [0, horizon]."""
     p, q, r = 2.0 * c[2], 3.0 * c[3], 12.0 * c[4]  # p + 2 q t + r t^2
     square = q * q - p * r
@@ -61,7 +61,7 @@ def inflections(c: Coefficients, horizon: float) -> tuple[float, float]:
 
 
 @function
-def turning_point(c: Coefficients, low: float, high: float) -> float:
+def quartic_turning_point(c: Coefficients, low: float, high: float) -> float:
     """Return where in [low, high] the first derivative, monotone there, is zero; `low` if nowhere."""
     at_low = quartic_slope(c, low)
     if (at_low < 0.0) == (quartic_slope(c, high) < 0.0):
@@ -85,7 +85,7 @@ def turning_point(c: Coefficients, low: float, high: float) -> float:
 
 
 @function
-def root_between(c: Coefficients, low: float, high: float) -> float:
+def quartic_root_between(c: Coefficients, low: float, high: float) -> float:
     """Return the root in [low, high], where the polynomial is monotone and changes sign."""
     at_low = quartic_value(c, low)
     start, end = low, high
@@ -106,13 +106,13 @@ def root_between(c: Coefficients, low: float, high: float) -> float:
 
 
 @function
-def monotone_borders(c: Coefficients, horizon: float) -> tuple[float, float, float, float, float]:
+def quartic_monotone_borders(c: Coefficients, horizon: float) -> tuple[float, float, float, float, float]:
     """Return times in order, from 0 to `horizon`, between which the polynomial is monotone."""
-    first, second = inflections(c, horizon)
+    first, second = quartic_inflections(c, horizon)
     return (
         0.0,
-        turning_point(c, 0.0, first),
-        turning_point(c, first, second),
-        turning_point(c, second, horizon),
+        quartic_turning_point(c, 0.0, first),
+        quartic_turning_point(c, first, second),
+        quartic_turning_point(c, second, horizon),
         horizon,
     )

@@ -9,8 +9,8 @@ a hit.
 import math
 
 from bounce_env.engine.compile.jit import function
-from bounce_env.engine.impact.advancement import closed_after, open_for
-from bounce_env.engine.motion.flight import Flight, flight_after, magnitude
+from bounce_env.engine.impact.advancement import advancement_step, advancement_to_closing
+from bounce_env.engine.motion.flight import Flight, acceleration_magnitude, flight_after
 from bounce_env.engine.motion.parts import Core
 from bounce_env.engine.motion.sincos import sin_cos
 from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
@@ -42,7 +42,7 @@ def rotating_capsule_time(
     """
     if not horizon >= 0.0:
         return math.inf
-    pull = magnitude(flight.ax, flight.ay)
+    pull = acceleration_magnitude(flight.ax, flight.ay)
     speed = math.sqrt(flight.vx * flight.vx + flight.vy * flight.vy)
     reached = math.sqrt(flight.x * flight.x + flight.y * flight.y) + (speed + 0.5 * pull * horizon) * horizon
     bound = pull + abs(spin) * (2.0 * (speed + pull * horizon) + abs(spin) * reached)
@@ -59,10 +59,10 @@ def rotating_capsule_time(
         gap = distance - offset_radius - away
         if gap <= tolerance:
             if rate < -ULPS_OF_SPEED * (abs(now.vx) + abs(now.vy) + abs(spin) * (front + offset_radius)):
-                after = t + closed_after(gap, rate, bound)
+                after = t + advancement_to_closing(gap, rate, bound)
                 return after if after <= horizon else math.inf
             rate, gap = max(rate, 0.0), max(gap, 0.0)
-        t += open_for(gap, rate, bound) if rate < 0.0 else max(open_for(gap, rate, bound), least)
+        t += advancement_step(gap, rate, bound) if rate < 0.0 else max(advancement_step(gap, rate, bound), least)
         if t > horizon:
             return math.inf
     return t

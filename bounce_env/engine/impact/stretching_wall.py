@@ -11,13 +11,13 @@ greatest, and a step to the first root of f + f' h - A h^2 / 2 cannot step over 
 import math
 
 from bounce_env.engine.compile.jit import function
-from bounce_env.engine.impact.advancement import closed_after, open_for
-from bounce_env.engine.motion.flight import Flight, flight_after, magnitude
+from bounce_env.engine.impact.advancement import advancement_step, advancement_to_closing
+from bounce_env.engine.motion.flight import Flight, acceleration_magnitude, flight_after
 from bounce_env.engine.tolerances import SEARCH_STEPS, ULPS_OF_SPEED
 
 
 @function
-def wall_gap(
+def stretching_wall_gap(
     flight: Flight, dx: float, dy: float, ex: float, ey: float, facing: float, tolerance: float
 ) -> tuple[float, float, float]:
     """Return the distance [m] from a wall along (dx, dy) to a flight's point, its rate of change [m/s], and the side.
@@ -43,7 +43,9 @@ def wall_gap(
 
 
 @function
-def _wall_gap_bound(flight: Flight, pull: float, dx: float, dy: float, ex: float, ey: float, window: float) -> float:
+def _stretching_wall_bound(
+    flight: Flight, pull: float, dx: float, dy: float, ex: float, ey: float, window: float
+) -> float:
     """A of the module's text over the next `window` seconds [m/s^2]."""
     spread = math.sqrt(ex * ex + ey * ey)
     # When the wall is shortest: where its ends are nearest to each other.
@@ -75,12 +77,12 @@ def stretching_wall_time(
     """
     if not horizon >= 0.0:
         return math.inf
-    pull, spread = magnitude(flight.ax, flight.ay), math.sqrt(ex * ex + ey * ey)
+    pull, spread = acceleration_magnitude(flight.ax, flight.ay), math.sqrt(ex * ex + ey * ey)
     t, away, facing = 0.0, 0.0, 1.0 if side >= 0 else -1.0
     for step in range(16 * SEARCH_STEPS):
         now = flight_after(flight, t)
         rx, ry = dx + ex * t, dy + ey * t
-        distance, rate, facing = wall_gap(now, rx, ry, ex, ey, facing, tolerance)
+        distance, rate, facing = stretching_wall_gap(now, rx, ry, ex, ey, facing, tolerance)
         if step == 0 and distance - offset_radius <= tolerance and rate > 0.0:
             away = distance - offset_radius  # what is left of a gap after a bounce is rounding
         gap = distance - offset_radius - away
@@ -89,16 +91,16 @@ def stretching_wall_time(
         # step that this allows.
         size = math.sqrt(now.x * now.x + now.y * now.y) + math.sqrt(rx * rx + ry * ry)
         window = min(horizon - t, 2.0 * size / (speed + spread + math.sqrt(pull * size)))
-        bound = _wall_gap_bound(now, pull, rx, ry, ex, ey, window)
+        bound = _stretching_wall_bound(now, pull, rx, ry, ex, ey, window)
         if gap <= tolerance:
             if rate < -ULPS_OF_SPEED * (speed + spread):
-                after = t + closed_after(gap, rate, bound)
+                after = t + advancement_to_closing(gap, rate, bound)
                 return after if after <= horizon else math.inf
             rate, gap = max(rate, 0.0), max(gap, 0.0)
         before = t
-        nearer = min(window, 3.0 * open_for(gap, rate, bound))
-        bound = _wall_gap_bound(now, pull, rx, ry, ex, ey, nearer)
-        t += min(open_for(gap, rate, bound), nearer)
+        nearer = min(window, 3.0 * advancement_step(gap, rate, bound))
+        bound = _stretching_wall_bound(now, pull, rx, ry, ex, ey, nearer)
+        t += min(advancement_step(gap, rate, bound), nearer)
         if rate >= 0.0:
             # Along the surface no step is shorter than that in which a gap changes by what counts as touching.
             t = max(t, before + math.sqrt(2.0 * tolerance / bound))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from bounce_env.engine.compile.jit import Feature, Record, function, where
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.tolerances import ULPS_OF_LENGTH, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import ULPS_OF_LENGTH
 
 
 class Flight(NamedTuple):
@@ -34,7 +34,7 @@ def flight_of(state: State, ball: Record) -> Flight:
 
 
 @function
-def moved(x: float, v: float, a: Feature, t: float) -> float:
+def coordinate_after(x: float, v: float, a: Feature, t: float) -> float:
     """Return one coordinate [m] after `t` seconds."""
     if a is None:
         return x + v * t
@@ -44,7 +44,7 @@ def moved(x: float, v: float, a: Feature, t: float) -> float:
 
 
 @function
-def sped(v: float, a: Feature, t: float) -> float:
+def speed_after(v: float, a: Feature, t: float) -> float:
     """Return one component of the velocity [m/s] after `t` seconds."""
     if a is None:
         return v
@@ -54,49 +54,49 @@ def sped(v: float, a: Feature, t: float) -> float:
 
 
 @function
-def place_after(flight: Flight, t: float) -> tuple[float, float]:
+def flight_place_after(flight: Flight, t: float) -> tuple[float, float]:
     """Return where [m] the flight is after `t` seconds."""
-    return moved(flight.x, flight.vx, flight.ax, t), moved(flight.y, flight.vy, flight.ay, t)
+    return coordinate_after(flight.x, flight.vx, flight.ax, t), coordinate_after(flight.y, flight.vy, flight.ay, t)
 
 
 @function
-def velocity_after(flight: Flight, t: float) -> tuple[float, float]:
+def flight_velocity_after(flight: Flight, t: float) -> tuple[float, float]:
     """Return the velocity [m/s] after `t` seconds."""
-    return sped(flight.vx, flight.ax, t), sped(flight.vy, flight.ay, t)
+    return speed_after(flight.vx, flight.ax, t), speed_after(flight.vy, flight.ay, t)
 
 
 @function
 def flight_after(flight: Flight, t: float) -> Flight:
     """Return the flight as it goes on after `t` seconds."""
-    x, y = place_after(flight, t)
-    vx, vy = velocity_after(flight, t)
+    x, y = flight_place_after(flight, t)
+    vx, vy = flight_velocity_after(flight, t)
     return Flight(x, y, vx, vy, flight.ax, flight.ay)
 
 
 @function
-def seen_from(flight: Flight, x: float, y: float) -> Flight:
+def flight_seen_from(flight: Flight, x: float, y: float) -> Flight:
     """Return the flight with the origin at (x, y) [m]."""
     return Flight(flight.x - x, flight.y - y, flight.vx, flight.vy, flight.ax, flight.ay)
 
 
 @function
-def seen_from_moving(flight: Flight, vx: float, vy: float) -> Flight:
+def flight_seen_from_moving(flight: Flight, vx: float, vy: float) -> Flight:
     """Return the flight as seen in a frame that moves at (vx, vy) [m/s]."""
     return Flight(flight.x, flight.y, flight.vx - vx, flight.vy - vy, flight.ax, flight.ay)
 
 
-def _no_acceleration_along(flight: Flight, nx: float, ny: float) -> None:
+def _no_flight_acceleration_along(flight: Flight, nx: float, ny: float) -> None:
     return None
 
 
-@where("ax", otherwise=_no_acceleration_along)
-def acceleration_along(flight: Flight, nx: float, ny: float) -> Feature:
+@where("ax", otherwise=_no_flight_acceleration_along)
+def flight_acceleration_along(flight: Flight, nx: float, ny: float) -> Feature:
     """Return the component of the acceleration [m/s^2] along a unit vector; None where there is no acceleration."""
     return flight.ax * nx + flight.ay * ny
 
 
 @function
-def magnitude(ax: Feature, ay: Feature) -> float:
+def acceleration_magnitude(ax: Feature, ay: Feature) -> float:
     """Return the length of an acceleration [m/s^2]; 0 where there is none."""
     if ax is None:
         return 0.0
@@ -104,9 +104,9 @@ def magnitude(ax: Feature, ay: Feature) -> float:
 
 
 @function
-def swept(x: float, v: float, a: Feature, t: float) -> tuple[float, float]:
+def swept_interval(x: float, v: float, a: Feature, t: float) -> tuple[float, float]:
     """Return the smallest and the largest value [m] that one coordinate takes on during the next `t` seconds."""
-    end = moved(x, v, a, t)
+    end = coordinate_after(x, v, a, t)
     low, high = min(x, end), max(x, end)
     if a is not None and v * a < 0.0 and abs(v) < abs(a) * t:
         turn = x - 0.5 * v * v / a
@@ -119,12 +119,12 @@ def _endless_flight(flight: Flight, extent: float) -> float:
 
 
 @where("ax", otherwise=_endless_flight)
-def time_in_scene(flight: Flight, extent: float) -> float:
+def flight_time_in_scene(flight: Flight, extent: float) -> float:
     """Return a duration [s] after which a free flight has fallen below everything in the scene for good.
 
     inf without gravity. It gives the searches of an unbounded flight an end.
     """
-    g = magnitude(flight.ax, flight.ay)
+    g = acceleration_magnitude(flight.ax, flight.ay)
     if g == 0.0:
         return math.inf
     nx, ny = flight.ax / g, flight.ay / g
@@ -137,51 +137,20 @@ def time_in_scene(flight: Flight, extent: float) -> float:
 
 
 @function
-def path_bound(flight: Flight, t: float) -> float:
+def flight_path_bound(flight: Flight, t: float) -> float:
     """Return a length [m] that the path of the next `t` seconds does not exceed."""
-    return (abs(flight.vx) + abs(flight.vy) + magnitude(flight.ax, flight.ay) * t) * t
+    return (abs(flight.vx) + abs(flight.vy) + acceleration_magnitude(flight.ax, flight.ay) * t) * t
 
 
 @function
-def touch_tolerance(flight: Flight, extent: float, t: float) -> float:
+def flight_tolerance(flight: Flight, extent: float, t: float) -> float:
     """Return what counts as touching [m] after `t` seconds: the rounding of the lengths that went into it."""
-    return ULPS_OF_LENGTH * (extent + path_bound(flight, t))
+    return ULPS_OF_LENGTH * (extent + flight_path_bound(flight, t))
 
 
 @function
-def fly(ball: Record, flight: Flight, t: float, hi: float, lo: float) -> None:
+def fly_ball(ball: Record, flight: Flight, t: float, hi: float, lo: float) -> None:
     """Move the ball along its flight by `t` seconds and let a new one start there, at the instant (hi, lo)."""
-    ball.x, ball.y = place_after(flight, t)
-    ball.vx, ball.vy = velocity_after(flight, t)
+    ball.x, ball.y = flight_place_after(flight, t)
+    ball.vx, ball.vy = flight_velocity_after(flight, t)
     ball.hi, ball.lo = hi, lo
-
-
-@function
-def slow_on_circle(flight: Flight, offset_radius: float, tolerance: float) -> float:
-    """Return the speed [m/s] below which closing on a circle is no hit: the rounding of velocity and normal."""
-    return (ULPS_OF_SPEED + tolerance / offset_radius) * (abs(flight.vx) + abs(flight.vy))
-
-
-@function
-def _bending_coasting(flight: Flight) -> float:
-    distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
-    across = (flight.x * flight.vy - flight.y * flight.vx) / distance
-    return across * across / distance
-
-
-@where("ax", otherwise=_bending_coasting)
-def bending(flight: Flight) -> float:
-    """Return the second derivative [m/s^2] of the distance from the origin."""
-    distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
-    return _bending_coasting(flight) + (flight.x * flight.ax + flight.y * flight.ay) / distance
-
-
-@function
-def grazes(closing_square: float, opening: float, depth: float) -> bool:
-    """Return whether a ball comes no deeper than `depth` [m] into what it closes on, while its gap bends open.
-
-    closing_square: the square of how fast it closes [m^2/s^2]. opening: the gap's second derivative [m/s^2]. The
-    instant of such a touch in passing is where the path is nearest, after closing / opening seconds: nothing closes
-    there, so that there is no bounce, but all that the ball touches is seen, as where a wall goes on as a tangent arc.
-    """
-    return closing_square < 2.0 * opening * depth

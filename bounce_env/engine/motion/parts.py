@@ -11,7 +11,7 @@ from typing import NamedTuple
 from bounce_env.engine.compile.jit import Record, function, unfolded, where
 from bounce_env.engine.memory.lookup import ends_of, turn_of
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.dragged_wall import velocity_on_wall, wall_line_at
+from bounce_env.engine.motion.dragged_wall import dragged_wall_line_at, velocity_on_dragged_wall
 from bounce_env.engine.motion.instant import later, since
 from bounce_env.engine.motion.sincos import sin_cos
 
@@ -44,57 +44,57 @@ def moving_part(state: State, w: int, m: int) -> MovingPart:
 
 
 @where("ends", otherwise=False)
-def is_dragged(part: MovingPart) -> bool:
+def is_dragged_part(part: MovingPart) -> bool:
     """Return whether a part is a wall that is dragged by its ends."""
     return part.shape.span == 0.0
 
 
 @function
-def offset_at(motion: Record, hi: float, lo: float) -> float:
+def part_offset_at(motion: Record, hi: float, lo: float) -> float:
     """Return where on its way [m or rad] a part is at an instant of its present motion."""
     return motion.offset + motion.velocity * since(hi, lo, motion.hi, motion.lo)
 
 
 @function
-def kept_offset(motion: Record, shape: Record, hi: float, lo: float) -> float:
+def kept_part_offset(motion: Record, shape: Record, hi: float, lo: float) -> float:
     """Return the same, without the rounding by which it may lie beyond a stop."""
-    return min(max(offset_at(motion, hi, lo), 0.0), shape.span)
+    return min(max(part_offset_at(motion, hi, lo), 0.0), shape.span)
 
 
 @function
-def _capsule_velocity(part: MovingPart, core: Core, rx: float, ry: float) -> tuple[float, float]:
+def _part_capsule_velocity(part: MovingPart, core: Core, rx: float, ry: float) -> tuple[float, float]:
     if part.turn != 0:
         spin = part.turn * part.motion.velocity
         return -spin * ry, spin * rx
     return part.motion.velocity * core.ux, part.motion.velocity * core.uy
 
 
-@where("ends", otherwise=_capsule_velocity)
-def surface_velocity(part: MovingPart, core: Core, rx: float, ry: float) -> tuple[float, float]:
+@where("ends", otherwise=_part_capsule_velocity)
+def part_surface_velocity(part: MovingPart, core: Core, rx: float, ry: float) -> tuple[float, float]:
     """Return the velocity [m/s] of a point of a part, at (rx, ry) [m] from the (x, y) of its core."""
-    if is_dragged(part):
-        return velocity_on_wall(part.ends, min(max((rx * core.ux + ry * core.uy) / core.front, 0.0), 1.0))
-    return _capsule_velocity(part, core, rx, ry)
+    if is_dragged_part(part):
+        return velocity_on_dragged_wall(part.ends, min(max((rx * core.ux + ry * core.uy) / core.front, 0.0), 1.0))
+    return _part_capsule_velocity(part, core, rx, ry)
 
 
 @function
-def _capsule_spin(part: MovingPart, core: Core) -> tuple[float, bool]:
+def _part_capsule_spin(part: MovingPart, core: Core) -> tuple[float, bool]:
     return part.turn * part.motion.velocity, part.turn != 0 and part.motion.velocity != 0.0
 
 
-@where("ends", otherwise=_capsule_spin)
-def spin_of(part: MovingPart, core: Core) -> tuple[float, bool]:
+@where("ends", otherwise=_part_capsule_spin)
+def part_spin(part: MovingPart, core: Core) -> tuple[float, bool]:
     """Return how fast [rad/s] a part turns, and whether it turns or stretches: its surface does not move as one."""
-    if is_dragged(part):
+    if is_dragged_part(part):
         ends = part.ends
         spin = ((ends.vy1 - ends.vy0) * core.ux - (ends.vx1 - ends.vx0) * core.uy) / core.front
         return spin, ends.vx0 != ends.vx1 or ends.vy0 != ends.vy1
-    return _capsule_spin(part, core)
+    return _part_capsule_spin(part, core)
 
 
 @function
-def _capsule_core(part: MovingPart, hi: float, lo: float) -> Core:
-    shape, offset = part.shape, offset_at(part.motion, hi, lo)
+def _part_capsule_core(part: MovingPart, hi: float, lo: float) -> Core:
+    shape, offset = part.shape, part_offset_at(part.motion, hi, lo)
     if part.turn != 0:
         s, c = sin_cos(part.turn * offset)
         ux, uy = shape.ux * c - shape.uy * s, shape.ux * s + shape.uy * c
@@ -103,17 +103,17 @@ def _capsule_core(part: MovingPart, hi: float, lo: float) -> Core:
     return Core(x, y, shape.ux, shape.uy, shape.back, shape.front)
 
 
-@where("ends", otherwise=_capsule_core)
-def core_at(part: MovingPart, hi: float, lo: float) -> Core:
+@where("ends", otherwise=_part_capsule_core)
+def part_core_at(part: MovingPart, hi: float, lo: float) -> Core:
     """Return where a part is at an instant of its present motion."""
-    if is_dragged(part):
-        x, y, ux, uy, length = wall_line_at(part.ends, since(hi, lo, part.motion.hi, part.motion.lo))
+    if is_dragged_part(part):
+        x, y, ux, uy, length = dragged_wall_line_at(part.ends, since(hi, lo, part.motion.hi, part.motion.lo))
         return Core(x, y, ux, uy, 0.0, length)
-    return _capsule_core(part, hi, lo)
+    return _part_capsule_core(part, hi, lo)
 
 
 @function
-def stop_instant(motion: Record, shape: Record) -> tuple[float, float]:
+def part_stop_instant(motion: Record, shape: Record) -> tuple[float, float]:
     """Return the instant at which a part's present motion ends at a stop: (hi, lo), inf if it stands."""
     if motion.velocity == 0.0:
         return math.inf, 0.0

@@ -5,9 +5,9 @@ import math
 from bounce_env.engine.compile.jit import function, kernel, where
 from bounce_env.engine.memory.records import OUT, Array
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import flight_of, place_after, velocity_after
+from bounce_env.engine.motion.flight import flight_of, flight_place_after, flight_velocity_after
 from bounce_env.engine.motion.instant import since
-from bounce_env.engine.motion.parts import core_at, moving_part, offset_at
+from bounce_env.engine.motion.parts import moving_part, part_core_at, part_offset_at
 
 
 @function
@@ -17,8 +17,8 @@ def ball_now(state: State, w: int, k: int) -> tuple[float, float, float, float]:
     if ball.status == OUT:
         return ball.x, ball.y, ball.vx, ball.vy
     flight, t = flight_of(state, ball), since(world.time_hi, world.time_lo, ball.hi, ball.lo)
-    x, y = place_after(flight, t)
-    vx, vy = velocity_after(flight, t)
+    x, y = flight_place_after(flight, t)
+    vx, vy = flight_velocity_after(flight, t)
     return x, y, vx, vy
 
 
@@ -26,7 +26,7 @@ def ball_now(state: State, w: int, k: int) -> tuple[float, float, float, float]:
 def core_now(state: State, w: int, m: int) -> tuple[float, float, float, float]:
     """Return where the two ends of part `m`'s core are now: x, y, x, y [m]; NaN where there are no parts."""
     world = state.worlds[w]
-    core = core_at(moving_part(state, w, m), world.time_hi, world.time_lo)
+    core = part_core_at(moving_part(state, w, m), world.time_hi, world.time_lo)
     return (
         core.x + core.back * core.ux,
         core.y + core.back * core.uy,
@@ -38,7 +38,7 @@ def core_now(state: State, w: int, m: int) -> tuple[float, float, float, float]:
 @where("parts", otherwise=0.0)
 def offset_now(state: State, w: int, m: int) -> float:
     """Return where part `m` is on its way now, from its first stop: [m], or [rad] of a flipper."""
-    return offset_at(state.motions[w, m], state.worlds[w].time_hi, state.worlds[w].time_lo)
+    return part_offset_at(state.motions[w, m], state.worlds[w].time_hi, state.worlds[w].time_lo)
 
 
 @where("parts", otherwise=0.0)

@@ -8,7 +8,7 @@ from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.memory.records import Array, record
-from bounce_env.engine.packing import direction
+from bounce_env.engine.packing import segment_direction
 from bounce_env.games.options import CONFIG, Gamma, Options, TimeLimit, options_class, refuse
 from bounce_env.games.paddle.levels import END_OF_LEVELS, Levels, levels_of
 from bounce_env.games.timing import Pace, pace_of
@@ -106,7 +106,7 @@ def new_rules(scene: Scene, options: PaddleOptions) -> Rules:
     paddle = next(i for i, e in enumerate(scene.elements) if isinstance(e, Paddle))
     rail = scene.elements[paddle]
     assert isinstance(rail, Paddle)
-    ux, uy, span = direction(rail.rail_start, rail.rail_end)
+    ux, uy, span = segment_direction(rail.rail_start, rail.rail_end)
     part = [i for i, _ in scene.parts].index(paddle)
     across = math.sqrt(width * width + height * height)
     seen = (x, width, y, height, 2.0 / width, 2.0 / height, 2.0 / span, ux, uy, across, paddle, part)

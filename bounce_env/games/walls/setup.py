@@ -8,7 +8,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.memory.records import Array, record
-from bounce_env.engine.placement import cores_at_start, describe_element, element_gaps
+from bounce_env.engine.placement import describe_element, element_gaps, part_cores_at_start
 from bounce_env.games.episode import FPS
 from bounce_env.games.options import CONFIG, Balls, Gamma, Options, TimeLimit, options_class
 from bounce_env.games.timing import Pace, pace_of
@@ -172,7 +172,7 @@ def _in_the_way(scene: Scene) -> Iterator[str]:
     x, y, width, height = field_of(scene)
     step = 0.5 * scene.ball.radius
     first, last = x + LAUNCH_X[0] * width, x + LAUNCH_X[1] * width
-    cores = cores_at_start(scene)
+    cores = part_cores_at_start(scene)
     for place in np.linspace(first, last, math.ceil((last - first) / step) + 1).tolist():
         for index, gap in element_gaps(scene, cores, place, y + LAUNCH_Y * height):
             if gap < 0.5 * step:

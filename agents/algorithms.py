@@ -32,7 +32,7 @@ class Hyperparameters(Strict):
 
 
 def from_text(value: Any) -> Any:
-    """The mapping that RL Zoo's text "dict(net_arch=[64], activation_fn=nn.ReLU)" means; another value as it is.
+    """Return the mapping that RL Zoo's text "dict(net_arch=[64], activation_fn=nn.ReLU)" means; another value as it is.
 
     Nothing is evaluated: values must be literals, or names such as nn.ReLU, which stay text.
     """
@@ -146,7 +146,7 @@ class SACHyperparameters(OffPolicy):
 
 
 def as_schedule(value: float | str | None) -> float | LinearSchedule | None:
-    """What SB3 takes for a config's number or "lin_NUMBER"."""
+    """Return what SB3 takes for a config's number or "lin_NUMBER"."""
     if isinstance(value, str):
         return LinearSchedule(float(value.removeprefix("lin_")), 0.0, 1.0)
     return value

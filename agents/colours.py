@@ -18,5 +18,5 @@ COLOURS = {
 
 
 def colour_of(player: str, algo: str = "ppo") -> str:
-    """The colour of a player: a baseline, an algorithm in any case, or `trained...` by `algo`."""
+    """Return the colour of a player: a baseline, an algorithm in any case, or `trained...` by `algo`."""
     return COLOURS[algo.lower() if player.startswith("trained") else player.lower()]

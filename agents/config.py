@@ -34,7 +34,7 @@ def _where(holds: Callable[[float], bool]) -> Callable[[Any], float]:
 
 
 def _count(value: Any) -> int:
-    """A whole number, which may be written as 1.0e+6."""
+    """Return a whole number, which may be written as 1.0e+6."""
     if _number(value) < 1 or value != int(value):
         raise ValueError
     return int(value)
@@ -99,7 +99,7 @@ class _Loader(yaml.SafeLoader):
 
 
 def read_yaml(path: Path) -> dict[str, Any]:
-    """The mapping in a YAML file; raises Refused, naming file and line, where there is none."""
+    """Return the mapping in a YAML file; raises Refused, naming file and line, where there is none."""
     try:
         data = yaml.load(path.read_bytes(), _Loader)
     except OSError as error:
@@ -112,7 +112,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
 
 
 def load_config(path: Path, env_id: str, overrides: Mapping[str, Any], model: type[Model]) -> Model:
-    """The entry of `env_id` in a config file, as a `model`; `overrides` take the place of what it says.
+    """Return the entry of `env_id` in a config file, as a `model`; `overrides` take the place of what it says.
 
     Raises Refused: one line for each thing that is wrong, with file, id, key, value and what is allowed.
     """

@@ -53,7 +53,7 @@ class Curve:
 
     @classmethod
     def read(cls, folder: Path) -> Self:
-        """The curve in a run folder; empty where there is none."""
+        """Return the curve in a run folder; empty where there is none."""
         path = folder / f"{NAME}.csv"
         if not path.exists():
             return cls()

@@ -29,7 +29,7 @@ def check_ends(task: Task) -> None:
 
 
 def play(task: Task, player: Player | LookAhead, episodes: int) -> Episodes:
-    """The held-out episodes, each to its end: episode k is the first one of the seed HELD_OUT + k.
+    """Return the held-out episodes, each to its end: episode k is the first one of the seed HELD_OUT + k.
 
     So every player meets the same launches, and no episode counts because it ended early. Raises Refused where there is
     no time limit.
@@ -60,7 +60,7 @@ def play(task: Task, player: Player | LookAhead, episodes: int) -> Episodes:
 
 
 def in_words(task: Task, played: Mapping[str, Episodes]) -> str:
-    """A table with its title."""
+    """Return a table with its title."""
     kwargs = f" {json.dumps(dict(task.env_kwargs))}" if task.env_kwargs else ""
     return f"{task.env_id}{kwargs}, whole held-out episodes, seeds from {HELD_OUT} on\n{table(played)}"
 

@@ -25,7 +25,7 @@ ACTIVATIONS = {nn.ReLU: "relu", nn.Tanh: "tanh"}
 
 
 def agent_of(run: Run, model: Model, steps: int, score: Interval | None) -> Agent:
-    """The policy of a PPO run as an `Agent`. Raises Refused for another algorithm."""
+    """Return the policy of a PPO run as an `Agent`. Raises Refused for another algorithm."""
     if run.algo != "ppo":
         raise Refused(f"{run.folder}: was trained with {run.algo}: must be a run of ppo")
     policy: Any = model.policy

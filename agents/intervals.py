@@ -27,7 +27,7 @@ class Interval:
 
 
 def bootstrap(scores: Sequence[Scores]) -> Interval:
-    """The mean over runs and episodes, and the percentile interval of a bootstrap over both.
+    """Return the mean over runs and episodes, and the percentile interval of a bootstrap over both.
 
     scores: of each run, (episodes,), 2 or more. First runs are drawn with replacement, then of each its episodes: two
     trainings differ by more than two episodes of one do (Agarwal et al. 2021, "Deep RL at the edge of the statistical
@@ -38,7 +38,7 @@ def bootstrap(scores: Sequence[Scores]) -> Interval:
     means = np.stack([one.bootstrap_distribution for one in of_runs])
 
     def mean_of_drawn(runs: Scores, axis: int) -> Scores:
-        """The mean of runs that have been drawn, each with episodes drawn anew."""
+        """Return the mean of runs that have been drawn, each with episodes drawn anew."""
         draws = generator.integers(RESAMPLES, size=runs.shape)
         return means[runs.astype(np.intp), draws].mean(axis=axis)
 

@@ -101,7 +101,7 @@ class Bookkeeping(BaseCallback):
 
 
 def new_model(run: Run) -> Model:
-    """An untrained model; what it draws follows from the run's seed."""
+    """Return an untrained model; what it draws follows from the run's seed."""
     set_random_seed(run.seed)
     env = run.task.for_sb3(run.hyperparameters.n_envs, training_seed(run.seed, 0))
     # Without a seed of its own: SB3 would seed the environments anew with it.
@@ -110,7 +110,7 @@ def new_model(run: Run) -> Model:
 
 
 def resumed_model(run: Run) -> Model:
-    """The newest checkpoint, with its optimizer's state, its count of steps, and episodes that it has not met.
+    """Return the newest checkpoint, with its optimizer's state, its count of steps, and episodes that it has not met.
 
     DQN and SAC begin with an empty replay buffer again.
     """
@@ -122,7 +122,7 @@ def resumed_model(run: Run) -> Model:
 
 
 def _seeded(model: Model, seed: int) -> Model:
-    """The model, what it draws from its action space seeded, too: DQN's exploration and SAC's first actions."""
+    """Return the model, what it draws from its action space seeded, too: DQN's exploration and SAC's first actions."""
     model.action_space.seed(seed)
     return model
 

@@ -23,7 +23,7 @@ class LookAhead:
         self._worlds = 0
 
     def plan(self, states: States) -> npt.NDArray[Any]:
-        """The next actions, (n, *action shape), for n worlds."""
+        """Return the next actions, (n, *action shape), for n worlds."""
         worlds, plans = len(states), len(self.plans)
         if worlds != self._worlds:
             self._envs, self._worlds = self.task.batch(worlds * plans).unwrapped, worlds
@@ -44,5 +44,5 @@ class LookAhead:
 def act(
     player: Player | LookAhead, observations: npt.NDArray[np.float32], states: Callable[[], States]
 ) -> npt.NDArray[Any]:
-    """The player's actions, (n, *action shape), for n worlds: what they show, and a way to get their states."""
+    """Return the player's actions, (n, *action shape), for n worlds: what they show, and a way to get their states."""
     return player.plan(states()) if isinstance(player, LookAhead) else player(observations)

@@ -77,7 +77,7 @@ class Timed:
 def near_flipper(
     scene: Scene, flipper: Flipper, x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.bool_]:
-    """Whether balls at (x, y) [m], (n,), are where a flipper at rest would strike them well."""
+    """Return whether balls at (x, y) [m], (n,), are where a flipper at rest would strike them well."""
     ux, uy = math.cos(flipper.rest_angle), math.sin(flipper.rest_angle)
     rx, ry = x - flipper.pivot[0], y - flipper.pivot[1]
     along, away = (rx * ux + ry * uy) / flipper.length, np.abs(rx * uy - ry * ux)

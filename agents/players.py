@@ -18,7 +18,7 @@ DEFAULT_ENV_ID = "Bounce/Paddle-v0"
 
 
 def trained(model: Model, *, sampled: bool = False) -> Player:
-    """A model that plays its best action (argmax), or samples one as it did in training.
+    """Return a model that plays its best action (argmax), or samples one as it did in training.
 
     What it samples is the same after each call of this function (which seeds PyTorch's one generator).
     """
@@ -30,7 +30,7 @@ def trained(model: Model, *, sampled: bool = False) -> Player:
 def named(
     name: str, env_id: str | None, env_kwargs: Mapping[str, Any] | None
 ) -> tuple[Task, dict[str, Player | LookAhead]]:
-    """What is played, and who plays it: `name` is a baseline or a run folder, which gives two players.
+    """Return what is played, and who plays it: `name` is a baseline or a run folder, which gives two players.
 
     env_id, env_kwargs: None for what the run was trained on. Raises Refused for a name that is neither, and where the
     trained agent cannot play what is asked.

@@ -24,7 +24,7 @@ GIF_STRIDE = 2  # every second frame at half the size: a GIF is for a page, the 
 
 
 def frames(task: Task, player: Player | LookAhead, seed: int) -> Iterator[Frame]:
-    """The frames of the first episode of `seed`, from its launch to its end."""
+    """Return the frames of the first episode of `seed`, from its launch to its end."""
     env = task.single(render_mode="rgb_array")
     observation, _ = env.reset(seed=seed)
     ended = False

@@ -58,7 +58,7 @@ def report(played: Mapping[str, Episodes]) -> dict[str, dict[str, float]]:
 
 
 def table(played: Mapping[str, Episodes]) -> str:
-    """The same as text, with the statistics; one row a player."""
+    """Return the same as text, with the statistics; one row a player."""
     lines = [
         f"{'player':<16}{'mean score':>11}{'95 % interval':>22}{'episodes':>10}"
         f"{'median':>8}{'seconds':>9}{'at limit':>10}{'score/touch':>13}"

@@ -109,7 +109,7 @@ def new_run(output: Path, task: Task, algo: str, hyperparameters: Hyperparameter
 
 
 def open_run(folder: Path) -> Run:
-    """The run in `folder`. Raises Refused where there is none, or where its config.yml is not valid."""
+    """Return the run in `folder`. Raises Refused where there is none, or where its config.yml is not valid."""
     path = folder / "config.yml"
     if not path.is_file():
         raise Refused(f"{folder}: is not a run folder: it has no config.yml")

@@ -157,7 +157,7 @@ def write_results(output: Path, rows: list[Row], panels: list[Panel]) -> None:
 
 
 def trainings_of(one: Study) -> list[Training]:
-    """What a study needs to have trained."""
+    """Return what a study needs to have trained."""
     kwargs = json.dumps(dict(one.train_kwargs), sort_keys=True)
     return [Training(one.env_id, kwargs, algo, seed) for algo, seeds in one.agents.items() for seed in range(seeds)]
 
@@ -189,7 +189,7 @@ def train_one(training: Training, options: StudyOptions) -> Path:
 def scores_of(
     one: Study, folders: Mapping[Training, Path], episodes: int, pool: ProcessPoolExecutor
 ) -> dict[str, list[Future[Scores]]]:
-    """The scores of each player, the baselines first, one entry for each training."""
+    """Return the scores of each player, the baselines first, one entry for each training."""
     counts = {name: one.look_ahead if name == BEST else episodes for name in BASELINES[one.env_id]}
     scores = {name: [pool.submit(baseline_scores, one, name, count)] for name, count in counts.items()}
     for algo in one.agents:
@@ -201,7 +201,7 @@ def scores_of(
 
 
 def measured(one: Study, scores: Mapping[str, list[Scores]], folders: Mapping[Training, Path]) -> list[Row]:
-    """The rows of a study."""
+    """Return the rows of a study."""
     intervals = {name: bootstrap(each) for name, each in scores.items()}
     idle, best = intervals[IDLE].mean, intervals[BEST].mean
     rows = []
@@ -216,19 +216,19 @@ def measured(one: Study, scores: Mapping[str, list[Scores]], folders: Mapping[Tr
 
 
 def baseline_scores(one: Study, name: str, episodes: int) -> Scores:
-    """The scores of a baseline on the held-out episodes, (episodes,)."""
+    """Return the scores of a baseline on the held-out episodes, (episodes,)."""
     return play(one.task, BASELINES[one.env_id][name](one.task), episodes).scores
 
 
 def agent_scores(one: Study, folder: Path, episodes: int, sampled: bool) -> Scores:
-    """The scores of a trained agent on the held-out episodes, (episodes,)."""
+    """Return the scores of a trained agent on the held-out episodes, (episodes,)."""
     kwargs = open_run(folder).task.env_kwargs if one.test_kwargs is None else one.test_kwargs
     task, players = named(str(folder), one.env_id, kwargs)
     return play(task, players["trained_sampled" if sampled else "trained"], episodes).scores
 
 
 def panel(one: Study, folders: Mapping[Training, Path], rows: list[Row]) -> Panel:
-    """The learning curves of a study, and its baselines."""
+    """Return the learning curves of a study, and its baselines."""
     curves: dict[str, list[Curve]] = {}
     for training in trainings_of(one):
         curves.setdefault(training.algo.upper(), []).append(Curve.read(folders[training]))
@@ -237,7 +237,7 @@ def panel(one: Study, folders: Mapping[Training, Path], rows: list[Row]) -> Pane
 
 
 def table(rows: list[Row]) -> str:
-    """The rows in Markdown."""
+    """Return the rows in Markdown."""
     lines = [
         "| game | player | mean score | 95 % interval | N | trainings x episodes | steps | training |",
         "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |",

@@ -98,7 +98,7 @@ def train(options: TrainOptions) -> int:
 
 
 def begun(options: TrainOptions) -> Run:
-    """A new run folder for what the options ask."""
+    """Return a new run folder for what the options ask."""
     check_range("seed", options.seed, 0, LARGEST_SEED)
     overrides = {"n_timesteps": options.steps, "env_kwargs": options.env_kwargs}
     given = {key: value for key, value in overrides.items() if value is not None}
@@ -110,7 +110,7 @@ def begun(options: TrainOptions) -> Run:
 
 
 def resumed(options: TrainOptions) -> Run:
-    """The run in the folder `options.resume`."""
+    """Return the run in the folder `options.resume`."""
     changed = [f.name for f in fields(options) if f.name in OF_A_NEW_RUN and getattr(options, f.name) != f.default]
     if changed:
         names = ", ".join(f"--{name.replace('_', '-')}" for name in changed)

@@ -84,7 +84,7 @@ class Guide:
 def meeting(
     seen: Seen, gravity: Floats, bounce: float, reach: Floats, half: float
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Where the ball's centre is to be met, and the normal that the wall must have there, (n, 2) each.
+    """Return where the ball's centre is to be met, and the normal that the wall must have there, (n, 2) each.
 
     Of all instants and flights to the target that which asks least of the wall: to be fast, and to be elsewhere soon.
     """
@@ -132,5 +132,5 @@ def look_ahead(task: Task) -> LookAhead:
 
 
 def motion(x: float, y: float, turn: float) -> Floats:
-    """The action that moves the wall's middle by (x, y), and turns a level wall about it."""
+    """Return the action that moves the wall's middle by (x, y), and turns a level wall about it."""
     return np.clip(np.array((x, y - turn, x, y + turn)), -1.0, 1.0)

@@ -30,12 +30,12 @@ def missing(extra: str, module: str, needs: str) -> MissingExtraError:
 
 
 def cpu_torch_command() -> str:
-    """A line for a shell that installs PyTorch's build for the CPU, which is a tenth of the one for GPUs."""
+    """Return a line for a shell that installs PyTorch's build for the CPU, which is a tenth of the one for GPUs."""
     return f"{_quoted(sys.executable or 'python')} -m pip install torch --index-url {CPU_TORCH}"
 
 
 def install_command(extra: str) -> str:
-    """A line for a shell that installs an extra for the Python that is running.
+    """Return a line for a shell that installs an extra for the Python that is running.
 
     From a clone, or another folder that the package was installed from (`direct_url.json`, PEP 610), in that folder.
     """
@@ -66,7 +66,7 @@ def source_folder() -> tuple[Path | None, bool]:
 
 
 def version() -> str:
-    """The version of the package, as it was installed."""
+    """Return the version of the package, as it was installed."""
     try:
         return metadata.version("bounce_env")
     except metadata.PackageNotFoundError:

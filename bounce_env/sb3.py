@@ -107,7 +107,7 @@ class BounceVecEnv(VecEnv):
         self._envs.close()
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
-        """An attribute of the worlds of `indices`, see `OneWorld`."""
+        """Return an attribute of the worlds of `indices`, see `OneWorld`."""
         return [getattr(world, attr_name) for world in self._worlds(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
@@ -125,7 +125,7 @@ class BounceVecEnv(VecEnv):
     def env_is_wrapped(
         self, wrapper_class: type[gym.Wrapper[Any, Any, Any, Any]], indices: VecEnvIndices = None
     ) -> list[bool]:
-        """Whether there is a wrapper: never, except that episodes are monitored."""
+        """Return whether there is a wrapper: never, except that episodes are monitored."""
         from stable_baselines3.common.monitor import Monitor  # noqa: PLC0415
 
         return [wrapper_class is Monitor for _ in self._get_indices(indices)]
@@ -149,7 +149,7 @@ class BounceVecEnv(VecEnv):
         return [self._rows_of(given, np.array([each == group for each in names])) for group in dict.fromkeys(names)]
 
     def _rows_of(self, given: list[dict[str, Any]], mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
-        """The options of the worlds of `mask`."""
+        """Return the options of the worlds of `mask`."""
         chosen = [given[w] for w in np.flatnonzero(mask).tolist()]
         names = list(chosen[0])
         if "snapshot" in names:

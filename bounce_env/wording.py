@@ -110,7 +110,7 @@ def numbers(value: Any) -> npt.NDArray[np.float64] | None:
 
 
 def _holds_bools(value: Any) -> bool:
-    """Whether a nested list or tuple has a bool among its numbers, which NumPy takes for 0 and 1."""
+    """Return whether a nested list or tuple has a bool among its numbers, which NumPy takes for 0 and 1."""
     if isinstance(value, list | tuple):
         return any(map(_holds_bools, value))
     return isinstance(value, bool | np.bool_)

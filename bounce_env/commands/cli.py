@@ -29,5 +29,5 @@ def complain(text: str) -> int:
 
 
 def counted(count: int, noun: str) -> str:
-    """How many there are of what `noun` says."""
+    """Return how many there are of what `noun` says."""
     return f"{count} {noun}{'' if count == 1 else 's'}"

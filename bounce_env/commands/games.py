@@ -18,7 +18,7 @@ LARGEST_SEED = 2**32 - 1
 
 
 def game_id(name: str) -> str:
-    """The id of a game, given as it is or as its short name; of several versions the last in the table.
+    """Return the id of a game, given as it is or as its short name; of several versions the last in the table.
 
     Raises Refused for any other name.
     """
@@ -61,7 +61,7 @@ def check_display(instead: str) -> None:
 
 
 def new_film(folder: Path, env_id: str, size: tuple[int, int], fps: float) -> Film:
-    """A film under a name that no other has: two may begin in one second."""
+    """Return a film under a name that no other has: two may begin in one second."""
     stem = f"{short_name(env_id)}-{time.strftime('%Y%m%d-%H%M%S')}"
     path, number = folder / f"{stem}.mp4", 1
     while path.exists():

@@ -10,7 +10,7 @@ import tyro
 
 
 def program() -> str:
-    """The program as it was called: bounce-env, or python -m bounce_env."""
+    """Return the program as it was called: bounce-env, or python -m bounce_env."""
     return "bounce-env" if Path(sys.argv[0]).stem == "bounce-env" else "python -m bounce_env"
 
 
@@ -212,7 +212,7 @@ _Commands: TypeAlias = (
 
 
 def read(arguments: Sequence[str]) -> Command:
-    """The command that the words give; for bad ones SystemExit with code 2, after a message."""
+    """Return the command that the words give; for bad ones SystemExit with code 2, after a message."""
     command: Command = tyro.cli(
         _Commands,
         prog=program(),

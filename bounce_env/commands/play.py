@@ -55,7 +55,7 @@ def play_game(options: Play) -> int:
 
 
 def keywords(options: Play) -> dict[str, object]:
-    """The environment's keywords among the options: those that were given, and what suits a person better."""
+    """Return the environment's keywords among the options: those that were given, and what suits a person better."""
     given = {name: value for name, value in asdict(options).items() if name not in NO_KEYWORDS}
     given = {name: value for name, value in given.items() if value is not None and value is not False}
     if given.get("time_limit") == 0:

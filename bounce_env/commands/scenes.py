@@ -22,7 +22,7 @@ def list_scenes() -> int:
 
 
 def outline(scene: Scene) -> str:
-    """A scene in a few words: its size [m] and how many elements of each kind it has."""
+    """Return a scene in a few words: its size [m] and how many elements of each kind it has."""
     left, bottom, right, top = scene.bounds
     kinds = Counter(type(element).__name__.lower() for element in scene.elements)
     counts = (counted(count, kind) for kind, count in kinds.items())
@@ -40,7 +40,7 @@ def check_named(source: str) -> None:
 
 
 def is_path(source: str) -> bool:
-    """Whether a scene is given as the path of a file, not by a built-in's name."""
+    """Return whether a scene is given as the path of a file, not by a built-in's name."""
     return source.endswith(".toml") or "/" in source or os.sep in source
 
 

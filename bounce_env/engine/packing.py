@@ -54,7 +54,7 @@ def pack(
 
 
 def _packed_tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
-    """The tables of the scenes, by their names in `State`."""
+    """Return the tables of the scenes, by their names in `State`."""
     faces = _padded_table(FACE, scenes, _pack_faces)
     circles = _padded_table(CIRCLE, scenes, _pack_circles)
     sensors = _padded_table(SENSOR, scenes, _pack_sensors)
@@ -96,7 +96,7 @@ def _packed_tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
 
 
 def scene_extent(scene: Scene) -> float:
-    """The scale of round-off [m]: the largest coordinate that the elements occupy plus the ball's radius.
+    """Return the scale of round-off [m]: the largest coordinate that the elements occupy plus the ball's radius.
 
     Rounded up to a power of two, so that no digit of it depends on how a bounding box was computed.
     """
@@ -143,7 +143,7 @@ def _pack_materials(scene: Scene) -> list[Row]:
 
 
 def _standing_walls(scene: Scene) -> Iterable[tuple[int, Wall]]:
-    """The walls that stand."""
+    """Return the walls that stand."""
     return ((i, e) for i, e in enumerate(scene.elements) if isinstance(e, Wall) and not moves(e))
 
 
@@ -152,7 +152,7 @@ def _pack_faces(scene: Scene) -> list[Row]:
 
 
 def _pack_one_way(scenes: Sequence[Scene]) -> Array | None:
-    """Which faces belong to one-way walls; None where there are none."""
+    """Return which faces belong to one-way walls; None where there are none."""
     flags = [[wall.one_way for _, wall in _standing_walls(scene)] for scene in scenes]
     if not any(map(any, flags)):
         return None
@@ -184,7 +184,7 @@ def _pack_circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:
 
 
 def _pack_round_ends(scene: Scene, disabled: Collection[int]) -> list[Row]:
-    """The round ends of walls and arcs. Of several at one point the first is kept: at a tie it is the one struck."""
+    """Return the round ends of walls and arcs. Of several at one point the first is kept: at a tie it is struck."""
     owner: dict[Point, int] = {}
     for i, element in enumerate(scene.elements):
         if i in disabled:
@@ -234,7 +234,7 @@ def _pack_circle_sensors(scene: Scene) -> list[Row]:
 
 
 def _pack_field_edges(scene: Scene) -> list[Row]:
-    """The border lines of the fields, counter-clockwise; `last` is 1 on the last edge of each field."""
+    """Return the border lines of the fields, counter-clockwise; `last` is 1 on the last edge of each field."""
     rows: list[Row] = []
     for field in scene.elements:
         if isinstance(field, Field):
@@ -255,7 +255,7 @@ def _pack_parts(scene: Scene) -> list[Row]:
 
 
 def _pack_part(e: Part, ball_radius: float) -> Row:
-    """A PART but for the index of its element."""
+    """Return a PART but for the index of its element."""
     if isinstance(e, Wall):
         ux, uy, length = segment_direction(e.start, e.end)
         return (*e.start, ux, uy, 0.0, length, 0.0, ball_radius, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -274,7 +274,7 @@ def _pack_part(e: Part, ball_radius: float) -> Row:
 
 
 def _pack_turns(scenes: Sequence[Scene]) -> Array | None:
-    """Which way each part turns: 1, -1, or 0 for one that slides; None where none turns."""
+    """Return which way each part turns: 1, -1, or 0 for one that slides; None where none turns."""
     signs = [
         [(1 if e.active_angle > e.rest_angle else -1) if isinstance(e, Flipper) else 0 for _, e in scene.parts]
         for scene in scenes
@@ -288,7 +288,7 @@ def _pack_turns(scenes: Sequence[Scene]) -> Array | None:
 
 
 def _pack_drag_limits(scenes: Sequence[Scene]) -> Array | None:
-    """What bounds the way of each dragged wall, by part; None where no scene has any."""
+    """Return what bounds the way of each dragged wall, by part; None where no scene has any."""
     if not any(isinstance(e, Wall) for scene in scenes for _, e in scene.parts):
         return None
     drag_limits = np.zeros((len(scenes), max(len(scene.parts) for scene in scenes)), DRAG_LIMITS)

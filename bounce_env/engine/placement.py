@@ -17,7 +17,7 @@ Core = tuple[Point, Point]
 
 
 def place_clear(scene: Scene, cores: Mapping[int, Core], x: float, y: float, disabled: Collection[int] = ()) -> Point:
-    """The place (x, y) [m] for the ball's centre, moved to the surface where it overlaps by round-off only.
+    """Return the place (x, y) [m] for the ball's centre, moved to the surface where it overlaps by round-off only.
 
     `cores` gives the ends of the core of each part by its index in `scene.elements`, `disabled` the elements that are
     switched off. A ball may be half-way through a one-way wall. Raises ValueError, naming the
@@ -48,7 +48,7 @@ def element_gaps(scene: Scene, cores: Mapping[int, Core], x: float, y: float) ->
             yield index, nearest[2] - nearest[3] - scene.ball.radius
 
 
-def separate(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
+def separate_placed_balls(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
     """Raise ValueError where two balls at `positions` (balls, 2) [m] overlap by more than is lost by rounding.
 
     Less than that is undone along the line between them.
@@ -69,7 +69,7 @@ def separate(scene: Scene, positions: npt.NDArray[np.float64]) -> None:
 
 
 def part_cores_at_start(scene: Scene) -> dict[int, Core]:
-    """The ends of the parts' cores after a reset [m], by index in `scene.elements`."""
+    """Return the ends of the parts' cores after a reset [m], by index in `scene.elements`."""
     return {index: _part_core_at_start(element) for index, element in scene.parts}
 
 
@@ -89,7 +89,7 @@ def _part_core_at_start(part: Part) -> Core:
 
 
 def describe_element(element: Element, index: int) -> str:
-    """How error messages name an element."""
+    """Return how error messages name an element."""
     return label(index, type(element).__name__.lower(), element.name)
 
 

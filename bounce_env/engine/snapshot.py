@@ -20,7 +20,7 @@ _CHECKSUM = 32
 
 
 def snapshot_bytes(scene: Scene, state: State) -> bytes:
-    """The state of a world of `scene`."""
+    """Return the state of a world of `scene`."""
     head = _HEAD.pack(_MAGIC, VERSION, _snapshot_digest(scene))
     data = head + b"".join(array.tobytes() for array in moving_arrays(state))
     return data + hashlib.sha256(data).digest()

@@ -102,7 +102,7 @@ class State(NamedTuple):
 
 
 def bounce(v1: Vector, v2: Vector) -> Pair:
-    """The movement vector `v1` after its bounce off the wall `v2` [m].
+    """Return the movement vector `v1` after its bounce off the wall `v2` [m].
 
     Source: the tutorial's "Bounce" and "Real bounce and friction", with unit vectors in both places.
     """
@@ -121,18 +121,20 @@ def bounce(v1: Vector, v2: Vector) -> Pair:
 
 
 def start(scene: Scene, position: Pair, velocity: Pair) -> State:
-    """A point at `position` [m] with `velocity` [m/s], for `step`.
+    """Return a point at `position` [m] with `velocity` [m/s], for `step`.
 
     Raises ValueError for a scene that has more than the tutorial knows (naming the element), and for
     numbers that are not finite.
     """
-    walls = _walls(scene)
+    walls = _tutorial_walls(scene)
     for name, pair in (("position", position), ("velocity", velocity)):
         if not (math.isfinite(pair[0]) and math.isfinite(pair[1])):
             raise ValueError(f"{name}: {pair} is not allowed, both numbers must be finite")
     p0 = (float(position[0]), float(position[1]))
     velocity = (float(velocity[0]), float(velocity[1]))
-    return State(p0, velocity, _sides(walls, p0, (_leaning(v2, velocity, scene.gravity) for v2 in walls)))
+    return State(
+        p0, velocity, _tutorial_sides(walls, p0, (_tutorial_leaning(v2, velocity, scene.gravity) for v2 in walls))
+    )
 
 
 def step(scene: Scene, state: State, dt: float, recheck: bool = True) -> State:
@@ -142,20 +144,20 @@ def step(scene: Scene, state: State, dt: float, recheck: bool = True) -> State:
     where a bounce ends faster than the scene's `max_speed` (the tutorial has no such cap); RuntimeError
     after `MAX_BOUNCES` bounces.
     """
-    return _tick(scene, _walls(scene), state, _checked_dt(dt), recheck)
+    return _tutorial_tick(scene, _tutorial_walls(scene), state, _checked_dt(dt), recheck)
 
 
 def run(scene: Scene, position: Pair, velocity: Pair, dt: float, steps: int, recheck: bool = True) -> State:
     """`steps` ticks of `dt` seconds from `position` [m] and `velocity` [m/s]; raises as both above."""
     state = start(scene, position, velocity)
-    walls = _walls(scene)
+    walls = _tutorial_walls(scene)
     dt = _checked_dt(dt)
     for _ in range(steps):
-        state = _tick(scene, walls, state, dt, recheck)
+        state = _tutorial_tick(scene, walls, state, dt, recheck)
     return state
 
 
-def _tick(scene: Scene, walls: list[Vector], state: State, dt: float, recheck: bool) -> State:
+def _tutorial_tick(scene: Scene, walls: list[Vector], state: State, dt: float, recheck: bool) -> State:
     gx, gy = scene.gravity
     velocity = (state.velocity[0] + gx * dt, state.velocity[1] + gy * dt)
     v1 = Vector(state.position, velocity[0] * dt, velocity[1] * dt, scene.ball.b, scene.ball.f)
@@ -166,8 +168,8 @@ def _tick(scene: Scene, walls: list[Vector], state: State, dt: float, recheck: b
     for bounces in range(MAX_BOUNCES):
         if bounces and not recheck:
             break
-        sides = _sides(walls, v1.p0, sides)
-        closest = _closest(walls, sides, v1, left)
+        sides = _tutorial_sides(walls, v1.p0, sides)
+        closest = _tutorial_closest(walls, sides, v1, left)
         if closest is None:
             break
         ip, share, struck = closest
@@ -183,8 +185,10 @@ def _tick(scene: Scene, walls: list[Vector], state: State, dt: float, recheck: b
     return State(p1, velocity, sides)
 
 
-def _closest(walls: list[Vector], sides: tuple[int, ...], v1: Vector, left: float) -> tuple[Pair, float, int] | None:
-    """Of the walls that the movement `left * v1` hits, the one with the closest intersection point.
+def _tutorial_closest(
+    walls: list[Vector], sides: tuple[int, ...], v1: Vector, left: float
+) -> tuple[Pair, float, int] | None:
+    """Return of the walls that the movement `left * v1` hits, the one with the closest intersection point.
 
     As (intersection point, share of `v1` to get there, index of the wall); None if nothing is in the way.
     """
@@ -193,44 +197,44 @@ def _closest(walls: list[Vector], sides: tuple[int, ...], v1: Vector, left: floa
         towards = -sides[index] * (v1.vx * v2.lx + v1.vy * v2.ly) / v2.len
         if towards <= ROUNDING * v1.len:
             continue
-        share = max(0.0, sides[index] * _distance(v2, v1.p0) / towards)
+        share = max(0.0, sides[index] * _tutorial_distance(v2, v1.p0) / towards)
         if share > left or (closest is not None and share >= closest[1]):
             continue
         ip = (v1.p0[0] + share * v1.vx, v1.p0[1] + share * v1.vy)
         along = (ip[0] - v2.p0[0]) * v2.dx + (ip[1] - v2.p0[1]) * v2.dy
-        if -_tolerance(v2, ip) <= along <= v2.len + _tolerance(v2, ip):
+        if -_tutorial_tolerance(v2, ip) <= along <= v2.len + _tutorial_tolerance(v2, ip):
             closest = (ip, share, index)
     return closest
 
 
-def _sides(walls: list[Vector], p0: Pair, before: Iterable[int]) -> tuple[int, ...]:
-    """On which side of each wall's line `p0` is; within rounding of the line, the side `before`."""
-    return tuple(_side(v2, p0, side) for v2, side in zip(walls, before, strict=True))
+def _tutorial_sides(walls: list[Vector], p0: Pair, before: Iterable[int]) -> tuple[int, ...]:
+    """Return on which side of each wall's line `p0` is; within rounding of the line, the side `before`."""
+    return tuple(_tutorial_side(v2, p0, side) for v2, side in zip(walls, before, strict=True))
 
 
-def _side(v2: Vector, p0: Pair, before: int) -> int:
-    distance = _distance(v2, p0)
-    if abs(distance) <= _tolerance(v2, p0):
+def _tutorial_side(v2: Vector, p0: Pair, before: int) -> int:
+    distance = _tutorial_distance(v2, p0)
+    if abs(distance) <= _tutorial_tolerance(v2, p0):
         return before
     return 1 if distance > 0 else -1
 
 
-def _leaning(v2: Vector, velocity: Pair, gravity: Pair) -> int:
-    """The side of a wall to which a point on it moves, or from which gravity presses it if it does not."""
+def _tutorial_leaning(v2: Vector, velocity: Pair, gravity: Pair) -> int:
+    """Return the side of a wall to which a point on it moves, or from which gravity presses it if it does not."""
     lean = velocity[0] * v2.lx + velocity[1] * v2.ly or -(gravity[0] * v2.lx + gravity[1] * v2.ly)
     return 1 if lean >= 0 else -1
 
 
-def _distance(v2: Vector, p: Pair) -> float:
+def _tutorial_distance(v2: Vector, p: Pair) -> float:
     """Distance of `p` from the wall's line [m], positive where its normal points."""
     return ((p[0] - v2.p0[0]) * v2.lx + (p[1] - v2.p0[1]) * v2.ly) / v2.len
 
 
-def _tolerance(v2: Vector, p: Pair) -> float:
+def _tutorial_tolerance(v2: Vector, p: Pair) -> float:
     return ROUNDING * max(abs(p[0]), abs(p[1]), *map(abs, v2.p0), *map(abs, v2.p1))
 
 
-def _walls(scene: Scene) -> list[Vector]:
+def _tutorial_walls(scene: Scene) -> list[Vector]:
     _refuse_more_than("scene", scene, ("gravity", "ball", "max_speed", "elements"))
     _refuse_more_than("ball", scene.ball, ("b", "f"))
     walls = []

@@ -12,7 +12,7 @@ from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import part_offset_at
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack, switch_round_ends
-from bounce_env.engine.placement import Core, part_cores_at_start, place_clear, separate
+from bounce_env.engine.placement import Core, part_cores_at_start, place_clear, separate_placed_balls
 from bounce_env.engine.snapshot import restore_bytes, snapshot_bytes
 from bounce_env.engine.world_kernels import (
     world_advance_to,
@@ -70,7 +70,7 @@ class World:
         cores = part_cores_at_start(self.scene)
         for k, (x, y) in enumerate(at.tolist()):
             at[k] = place_clear(self.scene, cores, x, y)
-        separate(self.scene, at)
+        separate_placed_balls(self.scene, at)
         world_reset(self._state, at, speed)
         self._switch_ends()
         self._started = True
@@ -248,7 +248,7 @@ class World:
                 ends[name] = self._state.ends[0, before][name]
 
     def snapshot(self) -> bytes:
-        """The full state as bytes; `restore` goes on from it, bit for bit."""
+        """Return the full state as bytes; `restore` goes on from it, bit for bit."""
         self._check_started()
         return snapshot_bytes(self.scene, self._state)
 
@@ -326,7 +326,7 @@ def _cores_by_index(scene: Scene, cores: Floats) -> dict[int, Core]:
 
 
 def _checked_end_velocities(name: str, value: object, max_speed: float | None) -> Floats:
-    """The velocities of a draggable wall's two ends, (2, 2)."""
+    """Return the velocities of a draggable wall's two ends, (2, 2)."""
     rows = numbers(value)
     limit = LARGEST if max_speed is None else max_speed
     if rows is None or rows.shape != (2, 2) or not (np.hypot(*rows.T) < limit).all():

@@ -29,7 +29,7 @@ Observation = npt.NDArray[np.float32] | npt.NDArray[np.uint8]
 
 
 def action_space(game: Game) -> spaces.Space[Any]:
-    """What an agent does."""
+    """Return what an agent does."""
     match game.actions:
         case Continuous(size):
             return spaces.Box(-1.0, 1.0, (size,), np.float32)
@@ -40,14 +40,14 @@ def action_space(game: Game) -> spaces.Space[Any]:
 
 
 def checked_render_mode(mode: Any, known: Sequence[str]) -> str | None:
-    """The render mode as it is; raises ValueError for one that there is not."""
+    """Return the render mode as it is; raises ValueError for one that there is not."""
     if mode is not None and (not isinstance(mode, str) or mode not in known):
         raise ValueError(f"render_mode = {shown(mode)}: must be one of {[None, *known]}{nearest(mode, known)}")
     return mode
 
 
 def resetting_time_limits(env: gym.Env[Any, Any]) -> tuple[gym.Wrapper[Any, Any, Any, Any], ...]:
-    """The TimeLimit wrappers around `env` that are resetting it right now.
+    """Return the TimeLimit wrappers around `env` that are resetting it right now.
 
     An environment does not know what wraps it, and a TimeLimit tells nobody that it cuts an episode: only from the
     stack of a reset, on which every wrapper stands, can it be learned whose step will be the last one, which has to say
@@ -65,12 +65,12 @@ def resetting_time_limits(env: gym.Env[Any, Any]) -> tuple[gym.Wrapper[Any, Any,
 
 
 def cuts_now(limit: Any) -> bool:
-    """Whether the step that a TimeLimit is passing on is the last one that it lets an episode have."""
+    """Return whether the step that a TimeLimit is passing on is the last one that it lets an episode have."""
     return bool((limit._elapsed_steps or 0) + 1 >= limit._max_episode_steps)
 
 
 def world_seed(generator: np.random.Generator) -> np.uint64:
-    """The seed of a world's stream of episodes, drawn from a Gymnasium generator."""
+    """Return the seed of a world's stream of episodes, drawn from a Gymnasium generator."""
     return np.uint64(generator.integers(2**64, dtype=np.uint64))
 
 
@@ -79,7 +79,7 @@ class SeedError(gym.error.Error, ValueError):
 
 
 def checked_seed(name: str, seed: Any) -> int | None:
-    """A seed as int, or None; raises SeedError for what is neither."""
+    """Return a seed as int, or None; raises SeedError for what is neither."""
     if seed is None:
         return None
     try:
@@ -89,7 +89,7 @@ def checked_seed(name: str, seed: Any) -> int | None:
 
 
 def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, dict[str, Any]]:
-    """The option "snapshot" of a reset, None where there is none, and the other options.
+    """Return the option "snapshot" of a reset, None where there is none, and the other options.
 
     Raises ValueError where it comes with a seed or with others: it says all that they could say.
     """
@@ -174,7 +174,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         return self._observation(), float(r.rewards[0]), bool(r.terminated[0]), bool(r.truncated[0]), info
 
     def render(self) -> npt.NDArray[np.uint8] | None:
-        """The present frame (height, width, 3) in mode rgb_array; in mode human the same picture in a window."""
+        """Return the present frame (height, width, 3) in mode rgb_array; in mode human the same picture in a window."""
         if self.render_mode is None:
             gym.logger.warn('render() needs a render mode: gym.make(..., render_mode="rgb_array")')
             return None
@@ -193,13 +193,13 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         return None
 
     def picture(self) -> Picture:
-        """What a frame shows now. Raises ResetNeeded before the first reset."""
+        """Return what a frame shows now. Raises ResetNeeded before the first reset."""
         if not self._seeded:
             raise gym.error.ResetNeeded("call reset() before picture()")
         return self._frames.picture(0)
 
     def clone_state(self) -> States:
-        """All that the present episode and those after it follow from; `restore_state` goes on from it, bit for bit.
+        """Return the complete state (physics, rules, random streams) of this and all later episodes, to the bit.
 
         Raises ResetNeeded before the first reset.
         """

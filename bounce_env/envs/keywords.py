@@ -47,7 +47,7 @@ class HasKeywords:
 
     @classmethod
     def sorted_out(cls, keywords: Mapping[str, Any]) -> tuple[Game, ViewOptions, dict[str, Any]]:
-        """The game, what is seen of it, and the environment's own keywords, as a user chose them.
+        """Return the game, what is seen of it, and the environment's own keywords, as a user chose them.
 
         Raises TypeError for an unknown keyword, ValueError for a value that is not allowed, SceneError for a scene.
         """

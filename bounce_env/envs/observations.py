@@ -124,11 +124,11 @@ class Frames:
         self.update(worlds)
 
     def picture(self, world: int) -> Picture:
-        """What a frame of a world shows."""
+        """Return what a frame of a world shows."""
         return self._picture(world, at_bounce=self._show_bounces, score=True)
 
     def frame(self, world: int) -> Pixels:
-        """A new picture of a world, (height, width, 3)."""
+        """Return a new picture of a world, (height, width, 3)."""
         return self._drawn(world, self.picture(world), self.size)
 
     def _drawn(self, world: int, picture: Picture, size: tuple[int, int]) -> Pixels:
@@ -172,7 +172,7 @@ class Frames:
 
 
 def _has_bounced(state: State, w: int) -> bool:
-    """Whether the ball's present flight begins at a bounce in the last step: on something that was hit in it."""
+    """Return whether the ball's present flight begins at a bounce in the last step: on something that was hit in it."""
     ball = state.balls[w, 0]
     touched = state.touches["element"][w, : ball.touched]
     return bool(ball.status != OUT and (state.hits[w, touched] > 0).any())

@@ -50,11 +50,11 @@ class OneWorld:
         return frame
 
     def picture(self) -> Any:
-        """What a frame shows now."""
+        """Return what a frame shows now."""
         return self._envs.picture(self._index)
 
     def clone_state(self) -> Any:
-        """The state of this world, see the single environment."""
+        """Return the state of this world, see the single environment."""
         return self._envs.clone_state(self._mask)
 
     def restore_state(self, state: Any) -> Any:
@@ -65,11 +65,11 @@ class OneWorld:
         """A world cannot be closed alone: does nothing."""
 
     def has_wrapper_attr(self, name: str) -> bool:
-        """Whether there is such an attribute."""
+        """Return whether there is such an attribute."""
         return hasattr(self, name)
 
     def get_wrapper_attr(self, name: str) -> Any:
-        """The attribute, as Gymnasium's environments find it through their wrappers."""
+        """Return the attribute, as Gymnasium's environments find it through their wrappers."""
         return getattr(self, name)
 
     def set_wrapper_attr(self, name: str, value: Any, *, force: bool = True) -> bool:
@@ -132,7 +132,7 @@ class OneWorld:
 
 
 def row_of(info: dict[str, Any], world: int) -> dict[str, Any]:
-    """The info of one world, as a single environment gives it."""
+    """Return the info of one world, as a single environment gives it."""
     row = {}
     for key, values in info.items():
         if not key.startswith("_") and info[f"_{key}"][world]:
@@ -141,5 +141,5 @@ def row_of(info: dict[str, Any], world: int) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """A NumPy scalar as Python's, anything else as it is."""
+    """Return a NumPy scalar as Python's, anything else as it is."""
     return value.item() if isinstance(value, np.generic) else value

@@ -27,7 +27,7 @@ class Flight(NamedTuple):
 
     @classmethod
     def of(cls, ball: Any) -> "Flight":
-        """The present flight of a ball (a row of `State.balls`); a drained one stays where it is."""
+        """Return the present flight of a ball (a row of `State.balls`); a drained one stays where it is."""
         b = dict(zip(ball.dtype.names, ball.item(), strict=True))
         begun = b["hi"] + b["lo"]
         if b["status"] == OUT:
@@ -35,7 +35,7 @@ class Flight(NamedTuple):
         return cls(b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], begun)
 
     def at(self, time: float) -> tuple[float, float]:
-        """Where the ball is at an instant."""
+        """Return where the ball is at an instant."""
         t = time - self.begun
         return self.x + (self.vx + 0.5 * self.ax * t) * t, self.y + (self.vy + 0.5 * self.ay * t) * t
 
@@ -81,7 +81,7 @@ class Trail:
         self._points += [(time, *flight.at(time)) for time in times]
 
     def until(self, now: float) -> npt.NDArray[np.float64]:
-        """The way of the last seconds up to an instant: x, y [m] and freshness, 0 to 1, oldest first; (n, 3)."""
+        """Return the way of the last seconds up to an instant: x, y [m] and freshness, 0 to 1, oldest first; (n, 3)."""
         if not self._points or now < self._points[0][0]:
             return np.zeros((0, 3))
         times, x, y = np.array(self._points).T

@@ -112,7 +112,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return self._observations(), self._info(mask)
 
     def checked_reset(self, seed: Any, options: Any) -> tuple[Flags, States | None, npt.NDArray[np.float64]]:
-        """The mask, snapshot and starts of a reset; raises ValueError for what is not allowed, and changes nothing."""
+        """Return mask, snapshot and starts of a reset; raise ValueError where they are not allowed."""
         options = checked_options(options)
         mask = self._mask_of("options['reset_mask']", options.pop("reset_mask", None))
         snapshot, options = taken_snapshot(seed, options)
@@ -160,7 +160,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return tuple(self._frames.frame(w) for w in range(self.num_envs))
 
     def render_world(self, world: int) -> npt.NDArray[np.uint8] | None:
-        """The frame of one world in mode rgb_array, None without a render mode."""
+        """Return the frame of one world in mode rgb_array, None without a render mode."""
         if self.render_mode is None:
             return None
         if not self._seeded[world]:
@@ -168,11 +168,11 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return self._frames.frame(world)
 
     def scene_of(self, world: int) -> Scene:
-        """The scene of the present episode of a world."""
+        """Return the scene of the present episode of a world."""
         return self._batch.scene(world)
 
     def status_of(self, world: int) -> tuple[str, ...]:
-        """What a player of a world wants to know beside picture and score, in words."""
+        """Return what a player of a world wants to know beside picture and score, in words."""
         return self._batch.status(world)
 
     @property
@@ -195,7 +195,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return tuple(called(world, name, *args, **kwargs) for world in self.worlds)
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """An attribute of every world, see `OneWorld`."""
+        """Return an attribute of every world, see `OneWorld`."""
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
@@ -210,14 +210,14 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
             setattr(world, name, value)
 
     def picture(self, world: int) -> Picture:
-        """What a frame of a world shows now. Raises ResetNeeded before its first reset, ValueError for no world."""
+        """Return what a frame of a world shows. Raises ResetNeeded before its first reset, ValueError for no world."""
         world = whole("world", world, 0, self.num_envs - 1)
         if not self._seeded[world]:
             raise gym.error.ResetNeeded("call reset() before picture()")
         return self._frames.picture(world)
 
     def clone_state(self, mask: Flags | None = None) -> States:
-        """What the worlds of `mask` (bool, one per world; None for all) follow from; see the single env's.
+        """Return what the worlds of `mask` (bool, one per world; None for all) follow from; see the single env's.
 
         Raises ResetNeeded before the first reset.
         """
@@ -276,7 +276,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return observations.copy() if self._copy else observations
 
     def _finals(self, ended: Flags) -> npt.NDArray[Any]:
-        """The last observations of the episodes that have ended, of worlds that are reset in the same step."""
+        """Return the last observations of the episodes that have ended, of worlds that are reset in the same step."""
         seen = self._frames.observations if self._resets_late else self._batch.results.final_observations
         finals = np.full(self.num_envs, None, object)
         for w in np.flatnonzero(ended).tolist():
@@ -314,7 +314,7 @@ def vector_env_of(single: type[BounceEnv]) -> type[BounceVectorEnv]:
 
 
 def called(world: OneWorld, name: str, *args: Any, **kwargs: Any) -> Any:
-    """What a method of a world returns, or an attribute that is none."""
+    """Return what a method of a world returns, or an attribute that is none."""
     attribute = getattr(world, name)
     return attribute(*args, **kwargs) if callable(attribute) else attribute
 

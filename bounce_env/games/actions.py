@@ -15,7 +15,7 @@ Controls: TypeAlias = npt.NDArray[np.float64]
 
 @function
 def clipped(action: float) -> float:
-    """What a number of a `Continuous` action stands for: a share, -1 to 1."""
+    """Return what a number of a `Continuous` action stands for: a share, -1 to 1."""
     return min(max(action, -1.0), 1.0)
 
 

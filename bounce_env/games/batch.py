@@ -122,7 +122,7 @@ class Batch:
         return self._threads
 
     def clone(self, mask: Mask) -> States:
-        """The states of the worlds of `mask`, with their streams of episodes and what the last step returned."""
+        """Return the states of the worlds of `mask`, with their streams of episodes and what the last step returned."""
         return clone_rows(self._digest, self._rows(), mask)
 
     def restore(self, states: States, mask: Mask) -> None:
@@ -163,7 +163,7 @@ class Batch:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def end_info(self) -> dict[str, Array]:
-        """What is said of the episodes that ended in the last step, (worlds,) each; 0 or None where none did."""
+        """Return what is said of the episodes that ended in the last step, (worlds,) each; 0 or None where none did."""
         books = self.results.ended
         reasons = np.full(self.worlds, None, object)
         ended = np.flatnonzero(books["end"])
@@ -195,7 +195,7 @@ class Batch:
         return self.episodes["level"].copy() if self.game.has_levels else None
 
     def scene(self, world: int) -> Scene:
-        """The scene that a world plays now."""
+        """Return the scene that a world plays now."""
         scene = self.game.scene_on(None if self.levels is None else int(self.levels[world]))
         places = dict(zip(self.game.targets, map(tuple, self.target_places(world).tolist()), strict=True))
         elements = (
@@ -205,11 +205,11 @@ class Batch:
         return replace(scene, elements=tuple(elements)) if places else scene
 
     def status(self, world: int) -> tuple[str, ...]:
-        """What a player of a world wants to know beside picture and score, in words."""
+        """Return what a player of a world wants to know beside picture and score, in words."""
         return self.game.status(self.episodes[world], None if self.memory is None else self.memory[world])
 
     def target_places(self, world: int) -> npt.NDArray[np.float64]:
-        """The centres of the game's `targets` in a world now, (n, 2) [m]."""
+        """Return the centres of the game's `targets` in a world now, (n, 2) [m]."""
         if not self.game.targets or self.state.circle_sensors is None:
             return np.zeros((0, 2))
         rings = self.state.circle_sensors[self.state.worlds["scene"][world]]

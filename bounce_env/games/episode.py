@@ -90,7 +90,7 @@ def _bind_compiled(rules: Any, game: GameState) -> Any:
 
 
 def bind(rules: Any, game: GameState) -> Any:
-    """A handle to all that a game's kernels work on; it keeps the arrays alive."""
+    """Return a handle to all that a game's kernels work on; it keeps the arrays alive."""
     return SimpleNamespace(rules=rules, game=game) if numba.config.DISABLE_JIT else _bind_compiled(rules, game)
 
 

@@ -52,23 +52,23 @@ class Game:
         raise NotImplementedError
 
     def rules_for(self, worlds: int) -> Any:
-        """The rules for a batch of so many worlds."""
+        """Return the rules for a batch of so many worlds."""
         return self.rules
 
     def written(self, state: State, rules: Any) -> tuple[Array, ...]:
-        """What `begin` writes of a batch's scenes and rules, a row for each world; () where nothing is."""
+        """Return what `begin` writes of a batch's scenes and rules, a row for each world; () where nothing is."""
         return ()
 
     def scene_on(self, level: int | None) -> Scene:
-        """The scene of a level; None where the game has none."""
+        """Return the scene of a level; None where the game has none."""
         return self.scenes[0]
 
     def lamps(self, memory: Any) -> npt.NDArray[np.bool_] | None:
-        """Which elements are lit in a world of which the rules remember this; None: the game has no lamps."""
+        """Return which elements are lit in a world of which the rules remember this; None: the game has no lamps."""
         return None
 
     def status(self, episode: Any, memory: Any) -> tuple[str, ...]:
-        """What a player wants to know beside the picture and the score, in a few words each: the time, at least.
+        """Return what a player wants to know beside the picture and the score, in a few words each: the time, at least.
 
         episode: a record of `games.episode.EPISODE`; memory: what the rules remember of the world.
         """
@@ -84,5 +84,5 @@ class Game:
 
 
 def clock(seconds: float) -> str:
-    """A time as a clock shows it: 1:05."""
+    """Return a time as a clock shows it: 1:05."""
     return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"

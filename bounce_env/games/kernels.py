@@ -110,7 +110,7 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
 
 @function
 def _all_finite(numbers: Array) -> bool:
-    """Whether there is neither NaN nor infinity in (n, k) floats."""
+    """Return whether there is neither NaN nor infinity in (n, k) floats."""
     # Counted, not asked one by one: so the processor looks at several at a time.
     others = 0
     for i in range(numbers.shape[0]):

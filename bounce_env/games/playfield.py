@@ -7,7 +7,7 @@ from bounce_env.engine.compile.jit import Record, function
 
 @function
 def place_seen(field: Record, x: float, y: float) -> tuple[float, float]:
-    """A place [m] as it is observed. field: with its lower left corner x, y [m], and x_scale, y_scale [1/m]."""
+    """Return a place [m] as it is observed. field: with its lower left corner x, y [m], and x_scale, y_scale [1/m]."""
     return (x - field.x) * field.x_scale - 1.0, (y - field.y) * field.y_scale - 1.0
 
 

@@ -87,5 +87,5 @@ def _check(game: Game, row: npt.NDArray[np.float64], given: Mapping[str, Any]) -
 
 
 def _given(given: Mapping[str, Any], name: str, row: tuple[float, float]) -> str:
-    """A world's pair as the caller gave it; of several pairs the world's own."""
+    """Return a world's pair as the caller gave it; of several pairs the world's own."""
     return shown(given[name] if np.shape(given[name]) == (2,) else row)

@@ -28,19 +28,19 @@ class States:
         return States(self.game, tuple(array[rows] for array in self.arrays))
 
     def any_ended(self) -> bool:
-        """Whether the episode of any of the worlds has ended."""
+        """Return whether the episode of any of the worlds has ended."""
         return any((array["end"] != RUNNING).any() for array in self.arrays if array.dtype == EPISODE)
 
     @classmethod
     def joined(cls, states: Sequence["States"]) -> "States":
-        """The rows of several states, one after the other; ValueError where they are of several games."""
+        """Return the rows of several states, one after the other; ValueError where they are of several games."""
         if not all(isinstance(one, cls) and one.game == states[0].game for one in states):
             raise ValueError(f"states = {shown(states)}: must be what clone_state() returned, all of one game")
         return cls(states[0].game, tuple(map(np.concatenate, zip(*(one.arrays for one in states), strict=True))))
 
 
 def clone_rows(game: str, arrays: tuple[Array, ...], mask: npt.NDArray[np.bool_]) -> States:
-    """The rows of `mask` of every array, copied."""
+    """Return the rows of `mask` of every array, copied."""
     return States(game, tuple(array[mask] for array in arrays))
 
 

@@ -38,5 +38,5 @@ def bits(seed: Any, stream: Any, index: int) -> Any:
 
 @function
 def uniform(seed: Any, stream: Any, index: int) -> float:
-    """A float in [0, 1), a multiple of 2^-53."""
+    """Return a float in [0, 1), a multiple of 2^-53."""
     return np.float64(bits(seed, stream, index) >> _S11) * 2.0**-53

@@ -33,5 +33,5 @@ def pace_of(options: Options) -> Pace:
 
 @function
 def out_of_time(episode: Record, pace: Pace) -> bool:
-    """Whether an episode has come to its time limit, or to that of its steps."""
+    """Return whether an episode has come to its time limit, or to that of its steps."""
     return episode.frames >= pace.limit or episode.steps >= pace.steps

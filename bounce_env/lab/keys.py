@@ -33,7 +33,7 @@ class Controls:
 
 
 def controls_for(space: spaces.Space[Any]) -> Controls:
-    """The controls for an action space; actions are of that space.
+    """Return the controls for an action space; actions are of that space.
 
     Discrete(3): left, stay, right. Discrete(4): nothing, left, right, both flippers; Discrete(6): and nudges to the
     left and right, in place of these. MultiBinary(2): left and right flipper; MultiBinary(4): and nudges. Box of 1 or 2
@@ -64,7 +64,7 @@ def controls_for(space: spaces.Space[Any]) -> Controls:
 
 
 def _sum(hand: dict[str, tuple[int, int]], held: Set[str]) -> tuple[int, int]:
-    """Which way the keys of a hand point: -1, 0 or 1 along x and y."""
+    """Return which way the keys of a hand point: -1, 0 or 1 along x and y."""
     ways = [(0, 0), *(way for key, way in hand.items() if key in held)]
     return _sign(sum(x for x, _ in ways)), _sign(sum(y for _, y in ways))
 
@@ -74,13 +74,13 @@ def _way(held: Set[str]) -> tuple[int, int]:
 
 
 def _pressed(held: Set[str]) -> Any:
-    """Whether the left and the right flipper are pressed, 0 or 1 each."""
+    """Return whether the left and the right flipper are pressed, 0 or 1 each."""
     ways = {way for key, (way, _) in (LEFT_HAND | RIGHT_HAND).items() if key in held}
     return np.array([-1 in ways, 1 in ways], np.int64)
 
 
 def _nudged(held: Set[str]) -> int:
-    """The action of a nudge, 4 or 5; 0 for none."""
+    """Return the action of a nudge, 4 or 5; 0 for none."""
     return next((4 + side for key, side in NUDGES.items() if key in held), 0)
 
 

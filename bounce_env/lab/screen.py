@@ -41,7 +41,7 @@ class Screen:
         self._line = lru_cache(64)(self._rendered)
 
     def draw(self, session: Session) -> Frame:
-        """The picture, (height, width, 3)."""
+        """Return the picture, (height, width, 3)."""
         width, height = self.size
         pixels = np.empty((height, width, 3), np.uint8)
         pixels[:] = BACKGROUND
@@ -102,7 +102,7 @@ class Screen:
 
 
 def _headlines(session: Session) -> tuple[tuple[str, int], ...]:
-    """What stands across the game, each line with its size in lines of text."""
+    """Return what stands across the game, each line with its size in lines of text."""
     if session.end_reason is not None:
         reason = session.end_reason.replace("_", " ")
         return ("Game over", 3), (reason, 2), (f"Score {session.score:g}", 2), ("R: play again", 1)

@@ -133,7 +133,7 @@ class Session:
             self._show()
 
     def _try(self, act: Callable[[Film], None], film: Film) -> bool:
-        """Whether it went well; a disk that is full ends the film, not the game."""
+        """Return whether it went well; a disk that is full ends the film, not the game."""
         try:
             act(film)
         except OSError as error:

@@ -25,7 +25,7 @@ def view_box(scene: Scene) -> Box:
 
 
 def _is_seen(region: Sensor | Field, box: Box) -> bool:
-    """Whether some of a region lies in a box; of one that is no segment its own box is asked."""
+    """Return whether some of a region lies in a box; of one that is no segment its own box is asked."""
     if isinstance(region, Sensor) and region.segment is not None:
         return clipped(region.segment, box) is not None
     one = region.bounds
@@ -74,7 +74,7 @@ def islands(scene: Scene, hidden: Collection[int] = ()) -> list[tuple[Point, ...
 
 
 def _chain(first: Point, neighbours: dict[Point, list[Point]]) -> tuple[Point, ...]:
-    """The corners from one on until it comes back to the first; () where the chain ends or branches."""
+    """Return the corners from one on until it comes back to the first; () where the chain ends or branches."""
     chain = [first]
     before, corner = first, neighbours[first][0]
     while corner != first and len(neighbours[corner]) == 2 and len(chain) <= len(neighbours):

@@ -30,13 +30,13 @@ _BAND = 64
 
 
 def surface_of(pixels: Pixels) -> pygame.Surface:
-    """A surface that draws into `pixels`, (height, width, 3), without a copy."""
+    """Return a surface that draws into `pixels`, (height, width, 3), without a copy."""
     height, width, _ = pixels.shape
     return pygame.image.frombuffer(pixels.data, (width, height), "RGB")
 
 
 def still_picture(width: int, height: int, looks: Sequence[Look]) -> Pixels:
-    """The field with `looks` on it, later ones above earlier ones, (height, width, 3)."""
+    """Return the field with `looks` on it, later ones above earlier ones, (height, width, 3)."""
     rows = np.linspace(FIELD_TOP, FIELD_BOTTOM, height).round().astype(np.uint8)
     pixels = np.repeat(rows[:, None, :], width, axis=1)
     target = surface_of(pixels)
@@ -174,7 +174,7 @@ def _stamp(target: pygame.Surface, image: pygame.Surface, place: tuple[int, int]
 
 
 def _area_of(look: Look) -> pygame.Rect:
-    """The whole pixels that a look touches."""
+    """Return the whole pixels that a look touches."""
     reaches = [reach for shape in look for reach in _reaches(shape)]
     left, right = (math.floor(min(x - r for x, _, r in reaches)), math.ceil(max(x + r for x, _, r in reaches)))
     top, bottom = (math.floor(min(y - r for _, y, r in reaches)), math.ceil(max(y + r for _, y, r in reaches)))
@@ -196,7 +196,7 @@ def _moved(shape: Stroke | Patch, right: float, down: float) -> Stroke | Patch:
 
 
 def _rasterised(look: Sequence[Stroke | Patch], area: pygame.Rect) -> pygame.Surface:
-    """What a look leaves on an area of the picture, with colours multiplied by their opacity.
+    """Return what a look leaves on an area of the picture, with colours multiplied by their opacity.
 
     Only so is the mean of an opaque and a clear pixel right: a clear one has no colour to give.
     """

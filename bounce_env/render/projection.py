@@ -39,7 +39,7 @@ class Projection:
     def fit(
         cls, bounds: tuple[float, float, float, float], width: int | None = None, height: int | None = None
     ) -> Self:
-        """The map that shows all of `bounds` (x_min, y_min, x_max, y_max in metres), centred, with a margin.
+        """Return the map that shows all of `bounds` (x_min, y_min, x_max, y_max in metres), centred, with a margin.
 
         width, height: pixels. One left out follows the shape of `bounds` and is even, as video codecs
         demand; with both left out the height is `DEFAULT_HEIGHT`; with both given the scene is letterboxed.

@@ -66,7 +66,7 @@ class Renderer:
         self._label = painter.Label(*_label_place(scene, self.projection, inked))
 
     def frame(self, picture: Picture) -> npt.NDArray[np.uint8]:
-        """A new C-contiguous array of RGB pixels, shape (height, width, 3), rows from the top.
+        """Return a new C-contiguous array of RGB pixels, shape (height, width, 3), rows from the top.
 
         The same picture gives the same bytes. Raises ValueError, and draws nothing, if a field of the
         picture has a wrong shape or holds what is not finite.

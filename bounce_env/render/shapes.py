@@ -69,7 +69,7 @@ Look: TypeAlias = tuple[Stroke | Patch, ...]
 
 
 def ball_look(scene: Scene, projection: Projection) -> Look:
-    """A ball whose centre is at the pixel coordinates (0, 0)."""
+    """Return a ball whose centre is at the pixel coordinates (0, 0)."""
     radius = max(scene.ball.radius * projection.scale, _SMALLEST_RADIUS, _pen(projection))
     center = (0.0, 0.0)
     return (*_glow(center, center, radius, 0.8 * radius, _BALL, 70), Stroke(center, center, radius, _BALL))
@@ -84,7 +84,7 @@ def trail_look(scene: Scene, projection: Projection, freshness: float) -> Look:
 
 
 def target_look(target: Element, projection: Projection) -> Look:
-    """A circle to be entered, with its centre at the pixel coordinates (0, 0): a shining disc with rings."""
+    """Return a circle to be entered, with its centre at the pixel coordinates (0, 0): a shining disc with rings."""
     if not isinstance(target, Sensor) or target.circle is None:
         raise TypeError(f"{target!r}: must be a circular sensor")
     center = (0.0, 0.0)
@@ -100,7 +100,7 @@ def target_look(target: Element, projection: Projection) -> Look:
 
 
 def part_look(part: Part, way: Point, scene: Scene, projection: Projection, *, lit: bool) -> Look:
-    """A moving part whose core runs from the pixel coordinates (0, 0) by `way`."""
+    """Return a moving part whose core runs from the pixel coordinates (0, 0) by `way`."""
     start = (0.0, 0.0)
     if isinstance(part, Bumper):
         return _bumper(start, part.radius, _adds_energy(part, scene), projection, lit=lit)
@@ -112,7 +112,7 @@ def part_look(part: Part, way: Point, scene: Scene, projection: Projection, *, l
 
 
 def rail_look(part: Part, projection: Projection) -> Look:
-    """The line on which the centre of a part moves; nothing for one that turns."""
+    """Return the line on which the centre of a part moves; nothing for one that turns."""
     match part:
         case Paddle():
             ends = (part.rail_start, part.rail_end)
@@ -125,7 +125,7 @@ def rail_look(part: Part, projection: Projection) -> Look:
 
 
 def still_look(element: Element, scene: Scene, projection: Projection, *, lit: bool) -> Look:
-    """An element that does not move, where it stands in the picture."""
+    """Return an element that does not move, where it stands in the picture."""
     match element:
         case Bumper():
             lively = _adds_energy(element, scene)
@@ -165,7 +165,7 @@ def _bumper(center: Point, size: float, lively: bool, projection: Projection, *,
 
 
 def _line(path: Sequence[Point], pen: float, lively: bool, *, lit: bool) -> Look:
-    """What bounces along a line: a wall, or the chords of an arc."""
+    """Return what bounces along a line: a wall, or the chords of an arc."""
     if not lit:
         return _along(path, pen, _LIVELY if lively else _PASSIVE)
     color = _LIVELY_LIT if lively else _PASSIVE_LIT
@@ -195,7 +195,7 @@ def _gate(wall: Wall, lively: bool, projection: Projection, *, lit: bool) -> Loo
 
 
 def _dashes(sensor: Sensor, scene: Scene, projection: Projection, *, lit: bool) -> Look:
-    """A sensor is no obstacle: a broken line, as far as it lies in the field."""
+    """Return a sensor is no obstacle: a broken line, as far as it lies in the field."""
     color = (_DRAIN_LIT if lit else _DRAIN) if sensor.drain else (_SENSOR_LIT if lit else _SENSOR)
     pen = _pen(projection)
     if sensor.segment is not None:
@@ -216,7 +216,7 @@ def _dashes(sensor: Sensor, scene: Scene, projection: Projection, *, lit: bool) 
 
 
 def _wind(field: Field, projection: Projection, *, lit: bool) -> Look:
-    """A field: a faint patch, and in its middle an arrow that points where it drives the ball."""
+    """Return a field: a faint patch, and in its middle an arrow that points where it drives the ball."""
     patch, color = (_WIND_LIT, _WIND_ARROW_LIT) if lit else (_WIND, _WIND_ARROW)
     corners = tuple(_pixel(point, projection) for point in field.points)
     x, y = (sum(side) / len(corners) for side in zip(*corners, strict=True))

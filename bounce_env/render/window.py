@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def display_problem() -> str | None:
-    """Why no window can be seen; None where nothing is known against it.
+    """Return why no window can be seen; None where nothing is known against it.
 
     A driver that was chosen by SDL_VIDEODRIVER is not questioned, be it one that shows nothing.
     """

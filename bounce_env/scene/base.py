@@ -32,13 +32,13 @@ class Spec:
 
 
 def union(boxes: Iterable[Box]) -> Box:
-    """The box around all boxes, zeros if there are none."""
+    """Return the box around all boxes, zeros if there are none."""
     sides = list(zip(*boxes, strict=True)) or [(0.0,)] * 4
     return min(sides[0]), min(sides[1]), max(sides[2]), max(sides[3])
 
 
 def box_of(points: Iterable[Point], margin: float = 0.0) -> Box:
-    """The box around points, wider by `margin` on every side."""
+    """Return the box around points, wider by `margin` on every side."""
     xs, ys = zip(*points, strict=True)
     return min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin
 

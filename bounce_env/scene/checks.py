@@ -95,7 +95,7 @@ def _sizes(ball: Ball | None, elements: Mapping[int, Element]) -> Iterator[InitE
 
 
 def _size_problems(element: Element, ball_radius: float, limits: _Limits) -> Iterator[tuple[str, str]]:
-    """The fields of an element that are out of proportion, and what they must be."""
+    """Return the fields of an element that are out of proportion, and what they must be."""
     match element:
         case Wall():
             yield from _short(element, "start", "end", limits)
@@ -162,7 +162,7 @@ def _speeds(ball: Ball | None, elements: Mapping[int, Element], max_speed: float
 
 
 def _part_speed(element: Element) -> float:
-    """The fastest that an element's surface moves, m/s."""
+    """Return the fastest that an element's surface moves, m/s."""
     match element:
         case Paddle():
             return element.max_speed
@@ -174,7 +174,7 @@ def _part_speed(element: Element) -> float:
 
 
 def _gain(ball: Ball | None, index: int, element: Element) -> tuple[str, Location] | None:
-    """What lets a bounce off the element add energy, in words and by its location, or None."""
+    """Return what lets a bounce off the element add energy, in words and by its location, or None."""
     if isinstance(element, Sensor | Field):
         return None
     if element.kick > 0.0:

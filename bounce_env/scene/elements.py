@@ -307,7 +307,7 @@ Part: TypeAlias = Paddle | Flipper | Bumper | Wall
 
 
 def moves(element: Element) -> bool:
-    """Whether an element moves: as it is commanded, or a bumper by itself."""
+    """Return whether an element moves: as it is commanded, or a bumper by itself."""
     match element:
         case Paddle() | Flipper():
             return True

@@ -40,7 +40,7 @@ class SceneError(ValueError):
 
 
 def label(index: int, kind: str, name: object) -> str:
-    """How messages call an element: `elements[3] (wall 'floor')`, or `elements[3] (wall)` without a name."""
+    """Return how messages call an element: `elements[3] (wall 'floor')`, or `elements[3] (wall)` without a name."""
     return f"elements[{index}] ({kind} {name!r})" if name else f"elements[{index}] ({kind})"
 
 
@@ -60,17 +60,17 @@ def line_of(problem: Problem, source: str, labels: Mapping[int, str], literal: s
 
 
 def _visible(literal: str) -> str:
-    """A literal whose letters are all seen: what would steer a terminal is escaped."""
+    """Return a literal whose letters are all seen: what would steer a terminal is escaped."""
     return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in literal)
 
 
 def printable(key: object) -> str:
-    """A key as messages print it."""
+    """Return a key as messages print it."""
     return key if isinstance(key, str) and key.isprintable() else repr(key)
 
 
 def problems_of(error: ValidationError) -> list[Problem]:
-    """The problems that pydantic has found, which `fields.explain` has put into words."""
+    """Return the problems that pydantic has found, which `fields.explain` has put into words."""
     return [
         Problem(details["loc"], ABSENT if details["type"] == "required" else details["input"], details["msg"])
         for details in error.errors()
@@ -107,14 +107,14 @@ def own_words(raises: Callable[[str, list[Problem]], Exception], *, named: bool 
 
 
 def _as_given(problem: Problem, given: Mapping[str, object]) -> Problem:
-    """A field's problem with the value that the caller gave, where only a converted one is known."""
+    """Return a field's problem with the value that the caller gave, where only a converted one is known."""
     if len(problem.at) == 1 and problem.value is not ABSENT and problem.at[0] in given:
         return Problem(problem.at, given[str(problem.at[0])], problem.message)
     return problem
 
 
 def _labels(elements: object) -> dict[int, str]:
-    """What to call the elements that a scene was given."""
+    """Return what to call the elements that a scene was given."""
     if not isinstance(elements, list | tuple):
         return {}
     return {i: label(i, type(e).__name__.lower(), getattr(e, "name", "")) for i, e in enumerate(elements)}

@@ -46,7 +46,7 @@ class Allowed:
 
 
 def not_allowed(words: str) -> PydanticCustomError:
-    """The error of a field whose value is not what `words` allow."""
+    """Return the error of a field whose value is not what `words` allow."""
     return PydanticCustomError("not_allowed", "must be {words}", {"words": words})
 
 
@@ -56,7 +56,7 @@ def required(words: str, because: Sequence[str | int] = ()) -> PydanticCustomErr
 
 
 def explain(error: ValidationError, spec: type) -> ValidationError:
-    """The error of a spec, in which each field is named and a missing or unknown one says what is allowed."""
+    """Return the error of a spec, in which each field is named and a missing or unknown one says what is allowed."""
     names = list(signature(spec).parameters)
     fields: dict[str, FieldInfo] = spec.__pydantic_fields__  # type: ignore[attr-defined]
 

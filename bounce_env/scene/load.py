@@ -27,12 +27,12 @@ _Spec = TypeVar("_Spec", bound=Scene | Ball | Element)
 
 
 def builtin_scenes() -> tuple[str, ...]:
-    """The names of the scenes that come with the package, sorted."""
+    """Return the names of the scenes that come with the package, sorted."""
     return tuple(sorted(Path(item.name).stem for item in _BUILTIN.iterdir() if item.name.endswith(".toml")))
 
 
 def load_scene(source: str | os.PathLike[str]) -> Scene:
-    """The scene of a TOML file, or a built-in scene.
+    """Return the scene of a TOML file, or a built-in scene.
 
     source: the path of a .toml file; or, as text without path separator and without .toml, the name of one of
     `builtin_scenes()`. scene/builtin/paddle.toml describes the format.
@@ -79,7 +79,7 @@ def _parse(data: bytes, source: str) -> Scene:
 
 
 def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
-    """The scene of a TOML file's contents, nested dicts and lists; `source` is what messages call it.
+    """Return the scene of a TOML file's contents, nested dicts and lists; `source` is what messages call it.
 
     Raises SceneError with a line for each thing that is wrong.
     """
@@ -99,7 +99,7 @@ def _read(data: object, source: str, places_of_text: Callable[[], dict[Location,
 def _line(
     problem: Problem, because: Location, source: str, labels: Mapping[int, str], places: Mapping[Location, Place]
 ) -> str:
-    """A problem in words, with the line and the literal of the file where there is one.
+    """Return a problem in words, with the line and the literal of the file where there is one.
 
     The line is that of the key; of a key that is missing that of the reason for it, or of the table that lacks it.
     """
@@ -193,7 +193,7 @@ def _field_names(spec: type[Scene | Ball]) -> str:
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """The contents of a scene as JSON and TOML have them, from which `scene_from_dict` makes an equal one.
+    """Return the contents of a scene as JSON and TOML have them, from which `scene_from_dict` makes an equal one.
 
     Nested dicts and lists of text, numbers and flags; what is None is left out.
     """
@@ -211,7 +211,7 @@ def _as_lists(value: object) -> object:
 
 
 def dump_scene(scene: Scene) -> str:
-    """The scene as the text of a TOML file, from which `load_scene` returns an equal one, bit for bit."""
+    """Return the scene as the text of a TOML file, from which `load_scene` returns an equal one, bit for bit."""
     ball = "\n".join(["[ball]", *_assignments(scene.ball)])
     elements = (
         "\n".join(["[[elements]]", f'type = "{type(element).__name__.lower()}"', *_assignments(element)])

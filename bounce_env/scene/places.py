@@ -82,7 +82,7 @@ class _Reader:
         self._value(path, line)
 
     def _keys(self) -> list[str]:
-        """The parts of a dotted key, and the blanks around it."""
+        """Return the parts of a dotted key, and the blanks around it."""
         keys: list[str] = []
         while not keys or self._text.startswith(".", self._at):
             self._at += 1 if keys else 0

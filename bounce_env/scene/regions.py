@@ -123,7 +123,7 @@ class Field(Spec):
 
 
 def _not_convex(points: tuple[Point, ...]) -> str | None:
-    """What keeps a polygon from being strictly convex, or None.
+    """Return what keeps a polygon from being strictly convex, or None.
 
     It is convex if every corner turns the same way and all of them together turn once around. A corner
     whose sign is round-off's is so flat that a scene refuses it.
@@ -142,7 +142,7 @@ def _not_convex(points: tuple[Point, ...]) -> str | None:
 
 
 def flat_corner(points: tuple[Point, ...], height: float) -> str | None:
-    """How far the flattest corner of a convex polygon must be off the line through its neighbours, if it is not.
+    """Return how far the flattest corner of a convex polygon must be off the line through its neighbours, if it is not.
 
     height: metres.
     """
@@ -162,5 +162,5 @@ def _cross(a: Point, b: Point) -> float:
 
 
 def _next(items: Sequence[_T]) -> Sequence[_T]:
-    """The items, each in the place of the one before it."""
+    """Return the items, each in the place of the one before it."""
     return (*items[1:], items[0])

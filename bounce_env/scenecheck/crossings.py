@@ -90,7 +90,7 @@ def _of_walls(one: Wall, other: Wall, tolerance: float) -> Iterator[Point]:
 
 
 def _is_crossed(one: Wall, other: Wall, tolerance: float) -> bool:
-    """Whether the ends of `one` lie on both sides of the line through `other`, by more than the tolerance."""
+    """Return whether the ends of `one` lie on both sides of the line through `other`, by more than the tolerance."""
     (x0, y0), (x1, y1) = other.start, other.end
     length = math.dist(other.start, other.end)
     sides = [((y - y0) * (x1 - x0) - (x - x0) * (y1 - y0)) / length for x, y in (one.start, one.end)]
@@ -98,7 +98,7 @@ def _is_crossed(one: Wall, other: Wall, tolerance: float) -> bool:
 
 
 def _on_circle(wall: Wall, arc: Arc, tolerance: float) -> Iterator[Point]:
-    """Where a wall crosses the circle of an arc: a wall that only touches it does not."""
+    """Return where a wall crosses the circle of an arc: a wall that only touches it does not."""
     (x0, y0), (x1, y1) = wall.start, wall.end
     length = math.dist(wall.start, wall.end)
     ux, uy = (x1 - x0) / length, (y1 - y0) / length
@@ -130,7 +130,7 @@ def _of_arcs(one: Arc, other: Arc, tolerance: float) -> Iterator[Point]:
 
 
 def _on_one_circle(one: Arc, other: Arc, tolerance: float) -> Iterator[Point]:
-    """A place in the middle of what two arcs of one circle share."""
+    """Return a place in the middle of what two arcs of one circle share."""
     turns = round((one.start_angle - other.start_angle) / (2.0 * math.pi))
     for turn in (2.0 * math.pi * (turns + k) for k in (-1, 0, 1)):
         low = max(one.start_angle, other.start_angle + turn)
@@ -140,7 +140,7 @@ def _on_one_circle(one: Arc, other: Arc, tolerance: float) -> Iterator[Point]:
 
 
 def _nearest(line: Element, point: Point) -> Point:
-    """The point of a wall or an arc that is nearest to another one."""
+    """Return the point of a wall or an arc that is nearest to another one."""
     if isinstance(line, Wall):
         (x0, y0), (x1, y1) = line.start, line.end
         dx, dy = x1 - x0, y1 - y0
@@ -160,7 +160,7 @@ def _ends(line: Element) -> tuple[Point, ...]:
 
 
 def _holds(arc: Arc, place: Point) -> bool:
-    """Whether a place on the circle of an arc is on the arc."""
+    """Return whether a place on the circle of an arc is on the arc."""
     angle = math.atan2(place[1] - arc.center[1], place[0] - arc.center[0])
     return arc.closed or (angle - arc.start_angle) % (2.0 * math.pi) <= arc.end_angle - arc.start_angle
 

@@ -92,7 +92,7 @@ def _how_often(survey: Survey, row: int) -> str:
 
 
 def _lost(survey: Survey) -> Iterator[Finding]:
-    """Of a table with an inside: there all balls started."""
+    """Return of a table with an inside: there all balls started."""
     rows = np.flatnonzero(survey.fates["end"] == LEFT).tolist()
     if survey.is_table and rows:
         title = f"a ball leaves the scene and crosses no drain: {_counted(len(rows), 'ball')}"
@@ -139,7 +139,7 @@ def _by_place(survey: Survey, which: npt.NDArray[np.bool_], title: str) -> Itera
 
 
 def _within_reach(survey: Survey) -> npt.NDArray[np.bool_]:
-    """Whether the balls ended within reach of a part that an agent moves."""
+    """Return whether the balls ended within reach of a part that an agent moves."""
     x, y = survey.fates["x"], survey.fates["y"]
     within = np.zeros(len(x), np.bool_)
     for x_min, y_min, x_max, y_max in reach_boxes(survey.scene):
@@ -148,7 +148,7 @@ def _within_reach(survey: Survey) -> npt.NDArray[np.bool_]:
 
 
 def _can_end(scene: Scene) -> bool:
-    """Whether a ball can drain or come within reach at all; in a closed box that is watched it cannot."""
+    """Return whether a ball can drain or come within reach at all; in a closed box that is watched it cannot."""
     return bool(reach_boxes(scene)) or any(isinstance(e, Sensor) and e.drain for e in scene.elements)
 
 
@@ -162,7 +162,7 @@ def _range(low: float, high: float) -> str:
 
 
 def _start(survey: Survey, row: int) -> str:
-    """The start of a ball, with all digits: it takes the same way again."""
+    """Return the start of a ball, with all digits: it takes the same way again."""
     x, y, vx, vy = survey.starts[row].tolist()
     return f"from position ({x!r}, {y!r}) velocity ({vx!r}, {vy!r})"
 

@@ -105,7 +105,7 @@ def _follow(state: State, watch: Watch, w: int, start: Array, fate: Any, seen: A
 
 @function
 def _end(watch: Watch, ball: Any, streak: int, stays: bool, in_step: int) -> int:
-    """How the ball ended with its last event; PLAYING where it goes on."""
+    """Return how the ball ended with its last event; PLAYING where it goes on."""
     if ball.status == OUT:
         return DRAINED
     if ball.status == CRUSHED:
@@ -119,7 +119,7 @@ def _end(watch: Watch, ball: Any, streak: int, stays: bool, in_step: int) -> int
 
 @function
 def _end_in_time(watch: Watch, ball: Any, fate: Any) -> int:
-    """What a ball comes to that goes on for as long as it is followed."""
+    """Return what a ball comes to that goes on for as long as it is followed."""
     left, bottom, right, top = watch.bounds
     if ball.contact == HELD:
         return RESTS

@@ -26,12 +26,12 @@ class Inside:
     cells: npt.NDArray[np.bool_]
 
     def holds(self, x: float, y: float) -> bool:
-        """Whether (x, y) [m] is inside."""
+        """Return whether (x, y) [m] is inside."""
         return bool(self.cells[math.floor((x - self.left) / self.cell), math.floor((y - self.bottom) / self.cell)])
 
 
 def inside_of(scene: Scene) -> Inside | None:
-    """The inside of a table: from where no ball comes out but through a drain or a one-way wall.
+    """Return the inside of a table: from where no ball comes out but through a drain or a one-way wall.
 
     None where a scene shuts off less than half of its free room.
     """
@@ -70,7 +70,7 @@ def _free(scene: Scene, left: float, bottom: float, cell: float, columns: int, l
 
 
 def _shut(element: Element) -> Element:
-    """What keeps a ball inside or ends its play is a wall to all that look for the outside."""
+    """Return what keeps a ball inside or ends its play is a wall to all that look for the outside."""
     if isinstance(element, Wall):
         return replace(element, one_way=False)
     if isinstance(element, Sensor) and element.drain and element.segment is not None:
@@ -79,7 +79,7 @@ def _shut(element: Element) -> Element:
 
 
 def _flooded(room: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """The cells that are free all the way to the raster's corner; ways go along columns and lines."""
+    """Return the cells that are free all the way to the raster's corner; ways go along columns and lines."""
     wet = np.zeros_like(room)
     edge = [(0, 0)]
     while edge:
@@ -91,7 +91,7 @@ def _flooded(room: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
 
 
 def _grown(cells: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """The cells and all beside them, across corners, too."""
+    """Return the cells and all beside them, across corners, too."""
     grown = cells.copy()
     for axis in (0, 1):
         grown = grown | _moved(grown, axis, 1) | _moved(grown, axis, -1)

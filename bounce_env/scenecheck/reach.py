@@ -9,7 +9,7 @@ SCORING_NAMES = ("target", "rollover", "slingshot")
 
 
 def is_agents(element: Element) -> bool:
-    """Whether an agent moves it; a bumper on a rail moves by itself."""
+    """Return whether an agent moves it; a bumper on a rail moves by itself."""
     return isinstance(element, Paddle | Flipper) or (isinstance(element, Wall) and element.draggable)
 
 
@@ -23,7 +23,7 @@ def scores(element: Element) -> bool:
 
 
 def reach_boxes(scene: Scene) -> tuple[Box, ...]:
-    """Where an agent can meet a ball's centre: x_min, y_min, x_max, y_max [m] for each part that it moves.
+    """Return where an agent can meet a ball's centre: x_min, y_min, x_max, y_max [m] for each part that it moves.
 
     The box around all that the part can sweep, wider by the ball's diameter, as far as it lies in the scene's bounds.
     """
@@ -41,7 +41,7 @@ def _box_of(part: Element, scene: Scene) -> Box:
 
 
 def with_borders(scene: Scene) -> Scene:
-    """The scene with a sensor along each side of each of `reach_boxes`, after its own elements.
+    """Return the scene with a sensor along each side of each of `reach_boxes`, after its own elements.
 
     No bit of the motion changes; that a ball comes within reach becomes an event.
     """

@@ -81,7 +81,7 @@ def survey(
 
 
 def place_size(scene: Scene) -> float:
-    """A ball that moves no farther than this [m] stays in its place."""
+    """Return a ball that moves no farther than this [m] stays in its place."""
     left, bottom, right, top = scene.bounds
     return max(scene.ball.radius, SMALLEST_PLACE * max(right - left, top - bottom))
 

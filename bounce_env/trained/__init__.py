@@ -49,7 +49,7 @@ class Agent:
         return int(self.layers[0][0].shape[1])
 
     def __call__(self, observations: npt.ArrayLike) -> Any:
-        """The best action for an observation (size,), or actions for several (n, size).
+        """Return the best action for an observation (size,), or actions for several (n, size).
 
         Raises ValueError for another shape, and for what is not finite.
         """
@@ -125,17 +125,17 @@ def _check(layers: tuple[tuple[Floats, Floats], ...], meta: Any, path: object) -
 
 
 def shipped_agents() -> tuple[str, ...]:
-    """The ids of the environments for which the package has a trained agent, sorted."""
+    """Return the ids of the environments for which the package has a trained agent, sorted."""
     return tuple(sorted(agent_id(item.name) for item in _FOLDER.iterdir() if item.name.endswith(".npz")))
 
 
 def agent_id(file: str) -> str:
-    """The environment that a file's agent plays: Bounce/Paddle-v0 for Bounce-Paddle-v0.npz."""
+    """Return the environment that a file's agent plays: Bounce/Paddle-v0 for Bounce-Paddle-v0.npz."""
     return file.removesuffix(".npz").replace("-", "/", 1)
 
 
 def agent_file(env_id: str) -> str:
-    """The name of the file of an environment's agent."""
+    """Return the name of the file of an environment's agent."""
     return f"{env_id.replace('/', '-')}.npz"
 
 

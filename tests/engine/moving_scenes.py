@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bounce_env import Ball, Bumper, Flipper, Paddle, Scene, Wall
-from bounce_env.engine.placement import part_cores_at_start, place_clear, separate
+from bounce_env.engine.placement import part_cores_at_start, place_clear, separate_placed_balls
 from bounce_env.engine.world import World
 
 MAX_SPEED = 250.0  # m/s, more than any part's surface
@@ -42,7 +42,7 @@ def start(rng: np.random.Generator, world: World, balls: int) -> bool:
     for _ in range(400):
         try:
             place = place_clear(scene, part_cores_at_start(scene), *rng.uniform(radius, 1.0 - radius, 2).tolist())
-            separate(scene, np.array([*places, place]))
+            separate_placed_balls(scene, np.array([*places, place]))
         except ValueError:
             continue
         places.append(place)

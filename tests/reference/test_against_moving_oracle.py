@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from bounce_env.engine.placement import part_cores_at_start, place_clear, separate
+from bounce_env.engine.placement import part_cores_at_start, place_clear, separate_placed_balls
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Wall
 from tests.conftest import soak_count
 from tests.reference.moving_oracle import MovingOracle
@@ -77,7 +77,7 @@ def starts_of(rng, scene, count):
     while len(places) < count:
         try:
             place = place_clear(scene, part_cores_at_start(scene), *rng.uniform(0.03, 0.97, 2).tolist())
-            separate(scene, np.array([*places, place]))
+            separate_placed_balls(scene, np.array([*places, place]))
         except ValueError:
             continue
         places.append(place)

@@ -86,7 +86,7 @@ class KernelCache(caching.FunctionCache):  # type: ignore[misc]
             cache._save(sig, data)
 
     def _beside(self, kinds: list[type]) -> "KernelCache | None":
-        """The cache for these types from outside of the package; None where there can be none."""
+        """Return the cache for these types from outside of the package; None where there can be none."""
         if any(kind.__module__ == "__main__" for kind in kinds):
             return None
         names = " ".join(f"{kind.__module__}.{kind.__qualname__}" for kind in kinds)
@@ -152,7 +152,7 @@ def _say_once(topic: str, words: str) -> None:
 
 
 def _foreign_kinds(sig: Any) -> list[type]:
-    """The types from outside of the package that a signature mentions, in order of their names."""
+    """Return the types from outside of the package that a signature mentions, in order of their names."""
     found = {kind for argument in getattr(sig, "args", sig) for kind in _named_tuples_of(argument)}
     return sorted(found & _foreign.keys(), key=lambda kind: (kind.__module__, kind.__qualname__))
 

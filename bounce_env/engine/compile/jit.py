@@ -83,12 +83,12 @@ def _kernel_without_jit(python_function: F) -> F:
 
 
 def from_python(compiled: F) -> F:
-    """A `function` as an entry point of its own, for what calls it from Python: packing, tests."""
+    """Return a `function` as an entry point of its own, for what calls it from Python: packing, tests."""
     return kernel(interpreted(compiled))
 
 
 def interpreted(compiled: F) -> F:
-    """The Python of a `function`, for what is called too rarely to be compiled for it."""
+    """Return the Python of a `function`, for what is called too rarely to be compiled for it."""
     python: F = getattr(compiled, "py_func", compiled)
     return python
 
@@ -124,7 +124,7 @@ def _constantly(value: Any) -> Callable[..., Any]:
 
 
 def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """A value of which no array, however deep in tuples it lies, says who owns its memory."""
+    """Return a value of which no array, however deep in tuples it lies, says who owns its memory."""
     if isinstance(kind, nb_types.Array):
         array = context.make_array(kind)(context, builder, value=value)
         array.meminfo = cgutils.get_null_value(array.meminfo.type)

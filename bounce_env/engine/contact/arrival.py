@@ -3,12 +3,11 @@
 import math
 
 from bounce_env.engine.compile.jit import function, where
-from bounce_env.engine.contact.touching import nearest_on_capsule
 from bounce_env.engine.memory.lookup import side_of_part
 from bounce_env.engine.memory.records import NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import flight_of, flight_path_bound, flight_tolerance, fly_ball
-from bounce_env.engine.motion.parts import moving_part, part_core_at
+from bounce_env.engine.motion.flight import flight_of, flight_path_bound, flight_rounding, fly_ball
+from bounce_env.engine.motion.parts import moving_part, nearest_on_core, part_core_at
 from bounce_env.engine.tolerances import CORNER, ROOM_TO_MEET, SEARCH_ENDS, ULPS_OF_LENGTH
 
 
@@ -17,7 +16,7 @@ def end_flight(state: State, w: int, k: int, t: float, hi: float, lo: float) -> 
     """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
     ball, extent = state.balls[w, k], state.scenes[state.worlds[w].scene].extent
     flight = flight_of(state, ball)
-    ball.tolerance = flight_tolerance(flight, extent, t)
+    ball.tolerance = flight_rounding(flight, extent, t)
     way = flight_path_bound(flight, t)
     if way > CORNER * ULPS_OF_LENGTH * extent:
         ball.confined = 0
@@ -96,7 +95,7 @@ def _snap_to_arc(state: State, w: int, k: int) -> None:
 def _snap_to_part(state: State, w: int, k: int, m: int) -> None:
     ball, part = state.balls[w, k], moving_part(state, w, m)
     core, offset_radius = part_core_at(part, ball.hi, ball.lo), part.shape.offset_radius
-    nx, ny, distance, _ = nearest_on_capsule(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
+    nx, ny, distance, _ = nearest_on_core(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
     # A search may end before a hit: then there is nothing to put the ball on.
     if distance - offset_radius <= SEARCH_ENDS * (offset_radius + core.front - core.back):
         ball.x += (offset_radius - distance) * nx

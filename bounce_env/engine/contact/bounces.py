@@ -52,7 +52,7 @@ def take_soft(ball: Record, touches: Table, w: int, extent: float) -> None:
 
 @function
 def fastest_closing(ball: Record, touches: Table, w: int) -> tuple[int, float]:
-    """Of the touched surfaces the one closed on fastest, ties by element: (index, speed), -1 if none is."""
+    """Return of the touched surfaces the one closed on fastest, ties by element: (index, speed), -1 if none is."""
     best, index, element = 0.0, -1, -1
     for i in range(ball.touched):
         touch = touches[w, i]
@@ -80,7 +80,7 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
         i, closing = fastest_closing(ball, state.touches, w)
         if i < 0:
             return -1, -1, ball.vx, ball.vy
-        if ball.touched > 1 and _is_damped(state, w, k, i, closing):
+        if ball.touched > 1 and _is_bounce_damped(state, w, k, i, closing):
             break
         kicked = _bounce_from(state, w, k, i, closing, noise, ledger)
         if state.parts is not None and is_crushed(ball, state.touches[w, i], state.scenes[state.worlds[w].scene]):
@@ -90,14 +90,14 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
             return (-1 if kicked else i), -1, ball.vx, ball.vy
     i, _ = fastest_closing(ball, state.touches, w)
     vx, vy = ball.vx, ball.vy
-    if i >= 0 and not _project(ball, state.touches, w, i):
+    if i >= 0 and not _project_bounces(ball, state.touches, w, i):
         ball.status, ball.vx, ball.vy = CRUSHED, vx, vy
     return -1, i, vx, vy
 
 
 @function
-def _is_damped(state: State, w: int, k: int, i: int, closing: float) -> bool:
-    """Whether a ball in a corner comes so slowly that its bounces there are taken to be over."""
+def _is_bounce_damped(state: State, w: int, k: int, i: int, closing: float) -> bool:
+    """Return whether a ball in a corner comes so slowly that its bounces there are taken to be over."""
     ball, world = state.balls[w, k], state.worlds[w]
     head = state.scenes[world.scene]
     if state.gravity is None:
@@ -121,9 +121,9 @@ def _bounce_from(state: State, w: int, k: int, i: int, closing: float, noise: fl
     if touch.moves and closing <= touch.least:
         rebound, f = max(rebound, touch.least), (1.0 if head.rest_speed > 0.0 and f > 0.0 else f)
     elif state.gravity is not None or touch.curvature < 0.0:
-        rebound, f = _softened(ball, touch, head, material, closing, rebound, f)
+        rebound, f = _softened_bounce(ball, touch, head, material, closing, rebound, f)
     kicked = material.kick > 0.0 and closing > material.kick_threshold
-    if kicked and _is_ready(state, w, k, touch.element, material.cooldown):
+    if kicked and _is_kick_ready(state, w, k, touch.element, material.cooldown):
         rebound += material.kick
     else:
         kicked = False
@@ -141,7 +141,7 @@ def _bounce_from(state: State, w: int, k: int, i: int, closing: float, noise: fl
 
 
 @function
-def _softened(
+def _softened_bounce(
     ball: Record, touch: Record, head: Record, material: Record, closing: float, rebound: float, f: float
 ) -> tuple[float, float]:
     """Rebound [m/s] and friction where the ball is pressed on the surface: absorbed, or on a curve the smallest one."""
@@ -171,8 +171,8 @@ def _softened(
 
 
 @where("cooling", otherwise=True)
-def _is_ready(state: State, w: int, k: int, element: int, cooldown: float) -> bool:
-    """Whether an element gives a kick now; if so it begins to cool down."""
+def _is_kick_ready(state: State, w: int, k: int, element: int, cooldown: float) -> bool:
+    """Return whether an element gives a kick now; if so it begins to cool down."""
     ball, cool = state.balls[w, k], state.cooling[w, element]
     if before(ball.hi, ball.lo, cool.hi, cool.lo):
         return False
@@ -182,7 +182,7 @@ def _is_ready(state: State, w: int, k: int, element: int, cooldown: float) -> bo
 
 
 @function
-def _project(ball: Record, touches: Table, w: int, first: int) -> bool:
+def _project_bounces(ball: Record, touches: Table, w: int, first: int) -> bool:
     """Take from the velocity what closes on any touched surface: along one of them where the others allow, else all.
 
     The one closed on fastest (`first`) is tried first. Returns False where a part closes on the ball and nothing lets
@@ -194,30 +194,32 @@ def _project(ball: Record, touches: Table, w: int, first: int) -> bool:
         ball.vx, ball.vy = vx, vy
         closing = closing_speed(ball, touch)
         push_off(ball, touch, closing)
-        if closing > 0.0 and _is_allowed(ball, touches, w, vx, vy):
+        if closing > 0.0 and _is_bounce_allowed(ball, touches, w, vx, vy):
             rest = closing_speed(ball, touch)
             if rest > slow_speed(ball, touch):
                 # Next to the speed that is left, the rounding of the old one would be another hit.
                 push_off(ball, touch, rest)
             return True
     ball.vx, ball.vy = touches[w, first].ux, touches[w, first].uy
-    striker = _striker(ball, touches, w)
+    striker = _bounce_striker(ball, touches, w)
     if striker < 0:
-        if not _is_allowed(ball, touches, w, vx, vy):
+        if not _is_bounce_allowed(ball, touches, w, vx, vy):
             # Friction drives it in between: nothing comes towards the ball, so that it may stand.
             ball.vx, ball.vy = 0.0, 0.0
         return True
     for i in range(ball.touched):
         for j in range(i):
-            if _squeeze_out(ball, touches[w, i], touches[w, j]) and _is_allowed(ball, touches, w, vx, vy):
+            if _bounce_out_of_squeeze(ball, touches[w, i], touches[w, j]) and _is_bounce_allowed(
+                ball, touches, w, vx, vy
+            ):
                 return True
     note_strike(ball, touches[w, striker])
     return False
 
 
 @function
-def _is_allowed(ball: Record, touches: Table, w: int, vx: float, vy: float) -> bool:
-    """Whether a ball of velocity (vx, vy) [m/s] before closes on nothing that it touches now."""
+def _is_bounce_allowed(ball: Record, touches: Table, w: int, vx: float, vy: float) -> bool:
+    """Return whether a ball of velocity (vx, vy) [m/s] before closes on nothing that it touches now."""
     allowed = True
     for j in range(ball.touched):
         # Seen from the velocity that the ball had: what is left of it may be all rounding.
@@ -227,8 +229,8 @@ def _is_allowed(ball: Record, touches: Table, w: int, vx: float, vy: float) -> b
 
 
 @function
-def _striker(ball: Record, touches: Table, w: int) -> int:
-    """The touched part that moves fastest towards the ball; -1 if none does."""
+def _bounce_striker(ball: Record, touches: Table, w: int) -> int:
+    """Return the touched part that moves fastest towards the ball; -1 if none does."""
     best, index = 0.0, -1
     for i in range(ball.touched):
         if surface_speed(touches[w, i]) > best:
@@ -237,7 +239,7 @@ def _striker(ball: Record, touches: Table, w: int) -> int:
 
 
 @function
-def _squeeze_out(ball: Record, one: Record, other: Record) -> bool:
+def _bounce_out_of_squeeze(ball: Record, one: Record, other: Record) -> bool:
     """Let the ball keep just ahead of two surfaces, along both; False where they oppose each other too much for it."""
     turn = one.nx * other.ny - one.ny * other.nx
     if one.nx * other.nx + one.ny * other.ny < -OPPOSED or abs(turn) <= ALIGNED:

@@ -59,15 +59,15 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     collect_touches(state, w, k)
     if state.parts is not None:
         keep_outside_touched(ball, state.touches, w)
-    if settling != JAMMED and _is_stuck(ball, state.touches, w, extent):
-        _stop(state, w, k, ledger)
+    if settling != JAMMED and _is_stuck_at_resolve(ball, state.touches, w, extent):
+        _resolve_stop(state, w, k, ledger)
         settling = JAMMED
     if settling == JAMMED:
-        duration = _stand(state, w, k, extent, ledger)
+        duration = _resolve_standing(state, w, k, extent, ledger)
     else:
         if settling == SETTLES:
             contact, support = FLYING, -1  # that contact had not begun yet
-        duration = _bounce_and_go(state, w, k, contact, support, at_once, ledger)
+        duration = _resolve_bounces(state, w, k, contact, support, at_once, ledger)
         if ball.status == CRUSHED:
             return
     if duration >= 0.0:
@@ -77,8 +77,8 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
 
 
 @function
-def _is_stuck(ball: Record, touches: Table, w: int, extent: float) -> bool:
-    """Whether a ball keeps bouncing without room, and none of the surfaces comes nearer while it would stand."""
+def _is_stuck_at_resolve(ball: Record, touches: Table, w: int, extent: float) -> bool:
+    """Return whether a ball keeps bouncing without room, and none of the surfaces comes nearer while it would stand."""
     if ball.touched == 0 or ball.confined <= BOUNCES_BEFORE_STANDING:
         return False
     seconds = _standing_time(ball, extent)
@@ -90,7 +90,7 @@ def _is_stuck(ball: Record, touches: Table, w: int, extent: float) -> bool:
 
 
 @function
-def _stop(state: State, w: int, k: int, ledger: Table) -> None:
+def _resolve_stop(state: State, w: int, k: int, ledger: Table) -> None:
     """Stop a ball that keeps bouncing between surfaces which leave it no room."""
     ball = state.balls[w, k]
     vx, vy = ball.vx, ball.vy
@@ -101,13 +101,13 @@ def _stop(state: State, w: int, k: int, ledger: Table) -> None:
 
 @function
 def _standing_time(ball: Record, extent: float) -> float:
-    """How long [s] falling by a clearance takes."""
+    """Return how long [s] falling by a clearance takes."""
     g = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
     return math.sqrt(2.0 * CLEARANCE * extent / g) if g > WEIGHTLESS else math.inf
 
 
 @function
-def _stand(state: State, w: int, k: int, extent: float, ledger: Table) -> float:
+def _resolve_standing(state: State, w: int, k: int, extent: float, ledger: Table) -> float:
     """Let a ball that is jammed stand for as long as falling by a clearance would take; returns that duration [s]."""
     ball = state.balls[w, k]
     if ball.support >= 0:
@@ -117,7 +117,7 @@ def _stand(state: State, w: int, k: int, extent: float, ledger: Table) -> float:
 
 
 @function
-def _bounce_and_go(state: State, w: int, k: int, contact: int, support: int, at_once: bool, ledger: Table) -> float:
+def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, at_once: bool, ledger: Table) -> float:
     """Bounce a ball from all that it touches, let it fly, slide or rest, and search what stands in its way.
 
     contact, support: those that it came with.
@@ -131,13 +131,13 @@ def _bounce_and_go(state: State, w: int, k: int, contact: int, support: int, at_
     single, corner, vx0, vy0 = bounce_from_all(state, w, k, ledger)
     if ball.status == CRUSHED:
         return -1.0
-    _let_go(ball)
+    _resolve_release(ball)
     if state.gravity is not None:
         # Told at once of a hit of something that it does not close on, a ball that rides on a part, or slides into one,
         # would be so for ever: it hops off.
         slides_in = contact >= 0 and ball.next_kind == NEXT_PART
         again = (contact == RIDING or slides_in) and at_once and state.worlds[w].bounces == bounces
-        i = _change_contact(state, w, k, contact, support, again, vx0, vy0, ledger)
+        i = _resolve_contact(state, w, k, contact, support, again, vx0, vy0, ledger)
         corner = corner if i < 0 else -1
     if corner >= 0:
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
@@ -146,19 +146,19 @@ def _bounce_and_go(state: State, w: int, k: int, contact: int, support: int, at_
     update_crossing_sides(state, w, k)
     vx, vy, duration = ball.vx, ball.vy, -1.0
     if state.gravity is not None and single >= 0 and ball.contact == FLYING:
-        duration = _settle(state, w, k, single)
+        duration = _resolve_settling(state, w, k, single)
     for _ in range(2):
         schedule_standing(state, w, k)
         if duration < 0.0 or ball.hit_after > duration:
             break
         # Something comes before the bounces are over: they go on one by one.
-        _let_go(ball)
+        _resolve_release(ball)
         ball.vx, ball.vy, ball.settling, duration = vx, vy, 0, -1.0
     return duration
 
 
 @function
-def _change_contact(
+def _resolve_contact(
     state: State, w: int, k: int, contact: int, support: int, off: bool, vx: float, vy: float,
     ledger: Table,
 ) -> int:  # fmt: skip
@@ -181,13 +181,13 @@ def _change_contact(
 
 
 @function
-def _let_go(ball: Record) -> None:
+def _resolve_release(ball: Record) -> None:
     ball.contact, ball.rides, ball.support = FLYING, -1, -1
     ball.ax, ball.ay = ball.gx, ball.gy
 
 
 @function
-def _settle(state: State, w: int, k: int, single: int) -> float:
+def _resolve_settling(state: State, w: int, k: int, single: int) -> float:
     """Sum the bounces still to come on a wall, if they rise above no tolerance; returns how long they take [s], or -1.
 
     With hops of durations tau, b tau, b^2 tau ... they end after tau / (1 - b); meanwhile the ball is on the wall. With

@@ -6,7 +6,7 @@ Sides matter to a ball of no radius, which can be on a wall, and to what is cros
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.detect.surfaces import face_line, face_normal
+from bounce_env.engine.detect.surfaces import face_line, surface_normal
 from bounce_env.engine.impact.grazing import bending
 from bounce_env.engine.impact.line import leaves_line_end
 from bounce_env.engine.memory.lookup import is_off
@@ -26,7 +26,7 @@ def update_sides(state: State, w: int, k: int, start: Flight, t: float) -> None:
     start: where and how its flight began, `t` seconds ago; its acceleration is not asked.
     """
     left = _face_left_at_end(state, w, k)
-    nx, ny = face_normal(state, w, k, left)
+    nx, ny = surface_normal(state, w, k, left)
     _update_faces(state, w, k, start, t)
     _update_arcs(state, w, k, start, t)
     _update_parts(state, w, k, start, t)
@@ -40,7 +40,7 @@ def update_sides(state: State, w: int, k: int, start: Flight, t: float) -> None:
 def _side_after_flight(
     height: float, rate: float, height0: float, rate0: float, t: float, slow: float, tolerance: float, side: int
 ) -> int:
-    """On which side of a line or circle the ball is: away from it the height tells, on it the way that it came.
+    """Return on which side of a line or circle the ball is: away from it the height tells, on it the way that it came.
 
     It came from the side that it moves away from, unless it was there already when its flight, of `t` seconds, began,
     and neither left meanwhile nor turned round; then it keeps the side that it had.
@@ -107,7 +107,7 @@ def _update_parts(state: State, w: int, k: int, start: Flight, t: float) -> None
 
 @where("face_sides", otherwise=-1)
 def _face_left_at_end(state: State, w: int, k: int) -> int:
-    """The face off whose end a ball of no radius comes just now, sliding or flying along it; -1 if there is none.
+    """Return the face off whose end a ball of no radius comes just now, sliding or flying along it; -1 for none.
 
     What goes on at the end may be met at the same instant, and be what it is said to have hit.
     """
@@ -125,7 +125,7 @@ def _face_left_at_end(state: State, w: int, k: int) -> int:
 
 @where("faces", otherwise=0.0)
 def _turn_about_end(state: State, w: int, k: int, left: int, nx: float, ny: float) -> float:
-    """Which way a point turns that comes off a wall's end: about the end, from the wall through the side it is on.
+    """Return which way a point turns about a wall's end that it comes off, from the wall through its own side.
 
     1.0 is counter-clockwise, -1.0 clockwise. Of what else begins or ends there it is on the side that is met first.
     """

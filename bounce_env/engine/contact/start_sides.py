@@ -86,7 +86,7 @@ def _initial_side(ball: Record, gravity: Vector, height: float, nx: float, ny: f
 
 @function
 def _initial_lean(ball: Record, gravity: Vector, nx: float, ny: float) -> float:
-    """To which side of a line that it is on the ball moves, or else is pulled from; 0 where it does neither.
+    """Return to which side of a line that it is on the ball moves, or else is pulled from; 0 where it does neither.
 
     Less than rounding is nothing: a ball sent along a turned wall is on the left of it, as along any other.
     """

@@ -12,30 +12,16 @@ from bounce_env.engine.impact.arc import is_in_arc_span
 from bounce_env.engine.impact.line import is_beside_line
 from bounce_env.engine.memory.lookup import is_off, is_one_way, side_of_part, side_on
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.parts import Core, MovingPart, moving_part, part_core_at, part_spin, part_surface_velocity
+from bounce_env.engine.motion.parts import (
+    Core,
+    MovingPart,
+    moving_part,
+    nearest_on_core,
+    part_core_at,
+    part_spin,
+    part_surface_velocity,
+)
 from bounce_env.engine.tolerances import ROLLING
-
-
-@function
-def nearest_on_capsule(
-    core: Core, x: float, y: float, side: int, tolerance: float
-) -> tuple[float, float, float, float]:
-    """Return how a capsule's core lies to the point (x, y) [m]: unit normal, distance [m], and the nearest point.
-
-    As (nx, ny, distance, nearest), the last along the core; distances are taken from the core's own (x, y).
-    side: on which side a ball of no radius is of a core without thickness, whose ends count up to the tolerance, and to
-    which the normal points; the distance is negative on the other one. Otherwise 0.
-    """
-    dx, dy = x - core.x, y - core.y
-    along, more = dx * core.ux + dy * core.uy, tolerance if side != 0 else 0.0
-    if core.back - more <= along <= core.front + more:
-        height = dy * core.ux - dx * core.uy
-        facing = 1.0 if (height >= 0.0 if side == 0 else side > 0) else -1.0
-        return -facing * core.uy, facing * core.ux, facing * height, along
-    nearest = core.front if along > core.front else core.back
-    dx, dy = dx - nearest * core.ux, dy - nearest * core.uy
-    distance = math.sqrt(dx * dx + dy * dy)
-    return dx / distance, dy / distance, distance, nearest
 
 
 @function
@@ -155,9 +141,7 @@ def _touch_parts(state: State, w: int, k: int) -> None:
             continue
         part = moving_part(state, w, m)
         core = part_core_at(part, ball.hi, ball.lo)
-        nx, ny, distance, nearest = nearest_on_capsule(
-            core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance
-        )
+        nx, ny, distance, nearest = nearest_on_core(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
         if abs(distance) > part.shape.offset_radius + ball.tolerance or is_off(state, w, part.shape.element):
             continue
         if not _touch_part(state, w, k, m, part, core, nx, ny, distance, nearest):

@@ -10,7 +10,7 @@ from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.memory.records import OUT
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import Flight, acceleration_magnitude, flight_after, flight_of, flight_tolerance
+from bounce_env.engine.motion.flight import Flight, acceleration_magnitude, flight_after, flight_of, flight_rounding
 from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.tolerances import (
     CORNER,
@@ -43,7 +43,7 @@ def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float
     of_one, of_other = flight_of(state, one), flight_of(state, other)
     horizon = min(one.end_after - s, other.end_after - t)
     head = state.scenes[state.worlds[w].scene]
-    tolerance = max(flight_tolerance(of_one, head.extent, s), flight_tolerance(of_other, head.extent, t))
+    tolerance = max(flight_rounding(of_one, head.extent, s), flight_rounding(of_other, head.extent, t))
     of_one, of_other = flight_after(of_one, s), flight_after(of_other, t)
     seen = _seen_from_other_ball(of_one, of_other)
     offset_radius, noise = 2.0 * head.ball_radius, pair_noise(one, other, of_one, of_other, head)
@@ -76,14 +76,14 @@ def _seen_from_other_ball_coasting(one: Flight, other: Flight) -> Flight:
 
 @where("ax", otherwise=_seen_from_other_ball_coasting)
 def _seen_from_other_ball(one: Flight, other: Flight) -> Flight:
-    """The flight of one ball as seen from another one."""
+    """Return the flight of one ball as seen from another one."""
     ax, ay = one.ax - other.ax, one.ay - other.ay
     return Flight(one.x - other.x, one.y - other.y, one.vx - other.vx, one.vy - other.vy, ax, ay)
 
 
 @where("ax", otherwise=0.0)
 def _drawn_off_other_ball(seen: Flight, offset_radius: float) -> float:
-    """The acceleration [m/s^2] that draws a ball off another one at the origin that it touches; < 0: onto it."""
+    """Return the acceleration [m/s^2] that draws a ball off another one at the origin that it touches; < 0: onto it."""
     return (seen.x * seen.ax + seen.y * seen.ay) / offset_radius
 
 

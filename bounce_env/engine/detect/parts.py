@@ -14,9 +14,9 @@ from bounce_env.engine.motion.flight import (
     Flight,
     flight_acceleration_along,
     flight_after,
+    flight_rounding,
     flight_seen_from,
     flight_seen_from_moving,
-    flight_tolerance,
     swept_interval,
 )
 from bounce_env.engine.motion.instant import before, later, since
@@ -78,7 +78,7 @@ def _is_in_part_zone(seen: Flight, part: MovingPart) -> bool:
 
 @function
 def _part_zone_change(ball: Record, seen: Flight, part: MovingPart, inside: bool, after: float) -> float:
-    """When the ball next passes the border of a part's zone, from the flight's start, no earlier than `after` [s]."""
+    """Return when the ball next passes the border of a part's zone, no earlier than `after` [s] in its flight."""
     shape = part.shape
     if part.turn != 0:
         border = Circle(ZONE_MARGIN * (shape.front + shape.offset_radius), 1.0 if inside else -1.0)
@@ -88,7 +88,7 @@ def _part_zone_change(ball: Record, seen: Flight, part: MovingPart, inside: bool
 
 @function
 def _part_strip_change(flight: Flight, ux: float, uy: float, border: float, inside: bool, after: float) -> float:
-    """When a flight next passes the distance `border` from the line along (ux, uy), no earlier than `after` [s]."""
+    """Return when a flight next passes the distance `border` from the line along (ux, uy), not before `after` [s]."""
     height, rate = flight.y * ux - flight.x * uy, flight.vy * ux - flight.vx * uy
     best = math.inf
     for facing in (1.0, -1.0):
@@ -124,7 +124,7 @@ def meet_part(
     horizon = min(min(ball.end_after, leaves_after) - t, since(stop_hi, stop_lo, hi, lo))
     core = part_core_at(part, hi, lo)
     seen = flight_seen_from(flight_after(flight, t), core.x, core.y)
-    tolerance = flight_tolerance(flight, extent, t)
+    tolerance = flight_rounding(flight, extent, t)
     if is_dragged_part(part):
         after = _meet_dragged_part(part, seen, core, side, tolerance, horizon)
     elif part.turn != 0 and motion.velocity != 0.0:
@@ -161,7 +161,7 @@ def _meet_dragged_part(
 def _comes_near_dragged_part(
     flight: Flight, dx: float, dy: float, ex: float, ey: float, offset_radius: float, horizon: float
 ) -> bool:
-    """Whether the boxes that a ball and a wall from the origin along (dx, dy), changing by (ex, ey), sweep meet.
+    """Return whether the boxes that a ball and a wall from the origin along (dx, dy), changing by (ex, ey), sweep meet.
 
     Most walls are rejected by that alone. Written so that infinite or undefined borders reject nothing.
     """

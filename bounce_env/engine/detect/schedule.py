@@ -10,7 +10,7 @@ import math
 from bounce_env.engine.compile.jit import Record, function, routine
 from bounce_env.engine.detect.parts import plan_part_hits, plan_part_zones, way_off_part
 from bounce_env.engine.detect.sensors import Crossing, next_crossing
-from bounce_env.engine.detect.surfaces import face_normal, first_arc, first_circle, first_end, first_face
+from bounce_env.engine.detect.surfaces import first_arc, first_circle, first_end, first_face, surface_normal
 from bounce_env.engine.memory.records import (
     NEXT_HIT,
     NEXT_PART,
@@ -56,7 +56,7 @@ def schedule_standing(state: State, w: int, k: int) -> None:
     """Search everything that stands: what ends the flight that begins now, and when."""
     ball = state.balls[w, k]
     flight = flight_of(state, ball)
-    nx, ny = face_normal(state, w, k, ball.contact)
+    nx, ny = surface_normal(state, w, k, ball.contact)
     if ball.contact == RIDING:
         nx, ny = ball.nx, ball.ny
     after = flight_time_in_scene(flight, state.scenes[state.worlds[w].scene].extent)

@@ -25,7 +25,7 @@ def face_line(face: Record) -> Line:
 
 
 @where("faces", otherwise=(0.0, 0.0))
-def face_normal(state: State, w: int, k: int, i: int) -> tuple[float, float]:
+def surface_normal(state: State, w: int, k: int, i: int) -> tuple[float, float]:
     """Return the unit normal, to ball `k`, of face `i`, which it touches; (0, 0) if there is none (i < 0)."""
     if i < 0:
         return 0.0, 0.0
@@ -38,7 +38,7 @@ def face_normal(state: State, w: int, k: int, i: int) -> tuple[float, float]:
 
 @function
 def _is_level_on_face(ball: Record, flight: Flight, face: Record) -> bool:
-    """Whether a ball touches a wall and keeps doing so: it moves along it, and nothing pulls it off."""
+    """Return whether a ball touches a wall and keeps doing so: it moves along it, and nothing pulls it off."""
     height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
     if abs(abs(height) - face.offset_radius) > ball.tolerance:
         return False
@@ -85,7 +85,7 @@ def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: floa
 
 @function
 def _slides_over_face_end(ball: Record, flight: Flight, face: Record, nx: float, ny: float, t: float) -> bool:
-    """Whether a point that slides on a wall with normal (nx, ny) passes, after `t` seconds, an end beneath it."""
+    """Return whether a point that slides on a wall with normal (nx, ny) passes an end beneath it after `t` seconds."""
     if not is_sliding(ball) or face.offset_radius > 0.0:
         return False
     x, y = flight_place_after(flight, t)
@@ -96,7 +96,7 @@ def _slides_over_face_end(ball: Record, flight: Flight, face: Record, nx: float,
 
 @function
 def _slides_past_circle(ball: Record, nx: float, ny: float, x: float, y: float, offset_radius: float) -> bool:
-    """Whether a ball that slides on a wall with normal (nx, ny) just touches a circle that has it at (x, y)."""
+    """Return whether a ball that slides on a wall with normal (nx, ny) just touches a circle that has it at (x, y)."""
     return is_sliding(ball) and x * nx + y * ny >= offset_radius - ball.tolerance
 
 

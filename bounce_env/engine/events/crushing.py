@@ -3,7 +3,6 @@
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.contact.touching import nearest_on_capsule
 from bounce_env.engine.detect.pairs import plan_pairs
 from bounce_env.engine.detect.parts import plan_part_zones
 from bounce_env.engine.detect.schedule import schedule_parts, schedule_resolve
@@ -25,6 +24,7 @@ from bounce_env.engine.motion.parts import (
     MovingPart,
     kept_part_offset,
     moving_part,
+    nearest_on_core,
     part_core_at,
     part_surface_velocity,
 )
@@ -92,9 +92,9 @@ def meet_crushed(state: State, w: int, k: int, m: int, ledger: Table) -> None:
 
 @function
 def _approach_to_crushed(ball: Record, part: MovingPart, side: int, hi: float, lo: float) -> tuple[float, float]:
-    """How far [m] a part is from a crushed ball at an instant, and how fast [m/s] it closes; 0 within rounding."""
+    """Return how far [m] a part is from a crushed ball, and how fast [m/s] it closes; 0 within rounding."""
     core = part_core_at(part, hi, lo)
-    nx, ny, distance, nearest = nearest_on_capsule(core, ball.x, ball.y, side, ball.tolerance)
+    nx, ny, distance, nearest = nearest_on_core(core, ball.x, ball.y, side, ball.tolerance)
     vx, vy = part_surface_velocity(part, core, nearest * core.ux, nearest * core.uy)
     closing = vx * nx + vy * ny
     return distance - part.shape.offset_radius, closing if abs(closing) > ULPS_OF_SPEED * (abs(vx) + abs(vy)) else 0.0

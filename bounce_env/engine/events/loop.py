@@ -8,8 +8,8 @@ import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.arrival import end_flight, snap_to_hit
+from bounce_env.engine.contact.collisions import collide
 from bounce_env.engine.contact.jams import forget_meetings
-from bounce_env.engine.contact.pairs import collide
 from bounce_env.engine.contact.resolve import resolve
 from bounce_env.engine.contact.sides import update_sides
 from bounce_env.engine.detect.pairs import first_pair
@@ -83,7 +83,7 @@ def _next_event(state: State, w: int, until_hi: float, until_lo: float) -> tuple
 
 @where("parts", otherwise=(-1, math.inf, 0.0))
 def _first_part_stop(state: State, w: int, until_hi: float, until_lo: float) -> tuple[int, float, float]:
-    """The part that first comes to a stop up to an instant, and when: (part, hi, lo), part -1 if none does."""
+    """Return the part that first comes to a stop up to an instant, and when: (part, hi, lo), part -1 if none does."""
     scene = state.worlds[w].scene
     hi, lo, first = math.inf, 0.0, -1
     for m in range(state.motions.shape[1]):
@@ -98,7 +98,7 @@ def _first_part_stop(state: State, w: int, until_hi: float, until_lo: float) -> 
 
 @function
 def _part_moves_until(motion: Record, shape: Record, hi: float, lo: float) -> bool:
-    """Whether the part surely comes to no stop up to an instant: most are told so without a division.
+    """Return whether the part surely comes to no stop up to an instant: most are told so without a division.
 
     The margin covers the rounding of the two ways; within it the stop's instant decides. Asked of both stops alike,
     since which one lies ahead is a coin's toss to the processor.
@@ -171,7 +171,7 @@ def _ball_hits(state: State, w: int, k: int, ledger: Table) -> None:
 
 @function
 def _is_over_at_once(ball: Record, t: float) -> bool:
-    """Whether in `t` seconds of flight neither the ball's place nor its velocity has changed by more than rounding."""
+    """Return whether `t` seconds of flight have changed neither place nor velocity by more than rounding."""
     speed, pull = abs(ball.vx) + abs(ball.vy), abs(ball.gx) + abs(ball.gy)
     return speed * t <= ball.tolerance and pull * t <= ULPS_OF_SPEED * speed
 

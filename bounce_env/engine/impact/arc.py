@@ -100,7 +100,7 @@ def arc_crossing_time(
 
 @function
 def _time_to_nearest_on_arc(flight: Flight, sense: float, tolerance: float) -> float:
-    """How long [s] until a point that touches a circle is nearest, if it does so in passing (see `grazes`); else 0."""
+    """Return how long [s] until a point that touches in passing (see `grazes`) is nearest; 0 if it does not."""
     distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
     closing = sense * (flight.x * flight.vx + flight.y * flight.vy) / distance
     opening = -sense * bending(flight)
@@ -111,7 +111,7 @@ def _time_to_nearest_on_arc(flight: Flight, sense: float, tolerance: float) -> f
 
 @function
 def _touches_arc_at(flight: Flight, arc: Any, offset_radius: float, t: float, tolerance: float) -> bool:
-    """Whether a ball touches after `t` seconds, beside the arc."""
+    """Return whether a ball touches after `t` seconds, beside the arc."""
     x, y = flight_place_after(flight, t)
     return abs(math.sqrt(x * x + y * y) - offset_radius) <= tolerance and is_in_arc_span(arc, x, y, tolerance)
 
@@ -123,7 +123,7 @@ def _sinks_into_arc_coasting(flight: Flight, sense: float) -> bool:
 
 @where("ax", otherwise=_sinks_into_arc_coasting)
 def _sinks_into_arc(flight: Flight, sense: float) -> bool:
-    """Whether a point that moves along the circle is about to cross it: the second derivative of its distance tells."""
+    """Return whether a point that moves along the circle is about to cross it, by its second derivative."""
     square = flight.vx * flight.vx + flight.vy * flight.vy
     dx, dy = flight.x * flight.ax, flight.y * flight.ay
     return sense * (square + dx + dy) > PRESSING * (square + abs(dx) + abs(dy))

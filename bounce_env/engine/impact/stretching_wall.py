@@ -46,7 +46,7 @@ def stretching_wall_gap(
 def _stretching_wall_bound(
     flight: Flight, pull: float, dx: float, dy: float, ex: float, ey: float, window: float
 ) -> float:
-    """A of the module's text over the next `window` seconds [m/s^2]."""
+    """Return a of the module's text over the next `window` seconds [m/s^2]."""
     spread = math.sqrt(ex * ex + ey * ey)
     # When the wall is shortest: where its ends are nearest to each other.
     t = min(max(-(dx * ex + dy * ey) / (spread * spread), 0.0), window)

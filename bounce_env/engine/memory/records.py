@@ -10,7 +10,7 @@ Array = npt.NDArray[Any]
 
 
 def record(**fields: str) -> np.dtype[Any]:
-    """A packed record type from names and formats."""
+    """Return a packed record type from names and formats."""
     # np.record gives attribute access with the compiler switched off, too.
     return np.dtype((np.record, np.dtype(list(fields.items()), align=True)))
 

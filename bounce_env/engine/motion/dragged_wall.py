@@ -39,7 +39,7 @@ def height_over_dragged_wall(ends: Record, t: float, x: float, y: float, vx: flo
 
 @function
 def _time_to_drag_border(place: float, velocity: float, low: float, high: float) -> float:
-    """How long [s] a coordinate moves on before it comes to a border."""
+    """Return how long [s] a coordinate moves on before it comes to a border."""
     return NO_STOP if velocity == 0.0 else min((_drag_border_ahead(velocity, low, high) - place) / velocity, NO_STOP)
 
 
@@ -50,7 +50,7 @@ def _drag_border_ahead(velocity: float, low: float, high: float) -> float:
 
 @function
 def _time_to_shortest_dragged_wall(ends: Record, shortest: float) -> float:
-    """How long [s] the ends move on before they are as near to each other as they may come."""
+    """Return how long [s] the ends move on before they are as near to each other as they may come."""
     dx, dy, ex, ey = ends.x1 - ends.x0, ends.y1 - ends.y0, ends.vx1 - ends.vx0, ends.vy1 - ends.vy0
     closing, square = -(dx * ex + dy * ey), dx * dx + dy * dy - shortest * shortest
     if closing <= ULPS_OF_SPEED * (abs(dx * ex) + abs(dy * ey)):
@@ -76,7 +76,7 @@ def _time_to_stop_of_dragged_ends(ends: Record, limits: Record) -> float:
 
 @function
 def _velocity_at_drag_border(place: float, velocity: float, low: float, high: float) -> float:
-    """A coordinate's velocity, 0 where a border holds it."""
+    """Return a coordinate's velocity, 0 where a border holds it."""
     return 0.0 if (place <= low and velocity < 0.0) or (place >= high and velocity > 0.0) else velocity
 
 

@@ -143,7 +143,7 @@ def flight_path_bound(flight: Flight, t: float) -> float:
 
 
 @function
-def flight_tolerance(flight: Flight, extent: float, t: float) -> float:
+def flight_rounding(flight: Flight, extent: float, t: float) -> float:
     """Return what counts as touching [m] after `t` seconds: the rounding of the lengths that went into it."""
     return ULPS_OF_LENGTH * (extent + flight_path_bound(flight, t))
 

@@ -9,7 +9,7 @@ from bounce_env.engine.compile.jit import function
 
 @function
 def later(hi: float, lo: float, duration: float) -> tuple[float, float]:
-    """The instant (hi, lo) plus a duration [s], normalised so that instants can be compared part by part (Knuth)."""
+    """Return the instant (hi, lo) plus a duration [s], normalised so that instants compare part by part (Knuth)."""
     total = hi + duration
     back = total - hi
     rest = (hi - (total - back)) + (duration - back) + lo
@@ -19,11 +19,11 @@ def later(hi: float, lo: float, duration: float) -> tuple[float, float]:
 
 @function
 def since(hi: float, lo: float, hi0: float, lo0: float) -> float:
-    """The duration [s] from the instant (hi0, lo0) to the instant (hi, lo)."""
+    """Return the duration [s] from the instant (hi0, lo0) to the instant (hi, lo)."""
     return (hi - hi0) + (lo - lo0)
 
 
 @function
 def before(hi: float, lo: float, hi0: float, lo0: float) -> bool:
-    """Whether (hi, lo) is earlier than (hi0, lo0)."""
+    """Return whether (hi, lo) is earlier than (hi0, lo0)."""
     return hi < hi0 or (hi == hi0 and lo < lo0)

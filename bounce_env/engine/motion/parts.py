@@ -119,3 +119,23 @@ def part_stop_instant(motion: Record, shape: Record) -> tuple[float, float]:
         return math.inf, 0.0
     room = shape.span - motion.offset if motion.velocity > 0.0 else motion.offset
     return later(motion.hi, motion.lo, room / abs(motion.velocity))
+
+
+@function
+def nearest_on_core(core: Core, x: float, y: float, side: int, tolerance: float) -> tuple[float, float, float, float]:
+    """Return how a capsule's core lies to the point (x, y) [m]: unit normal, distance [m], and the nearest point.
+
+    As (nx, ny, distance, nearest), the last along the core; distances are taken from the core's own (x, y).
+    side: on which side a ball of no radius is of a core without thickness, whose ends count up to the tolerance, and to
+    which the normal points; the distance is negative on the other one. Otherwise 0.
+    """
+    dx, dy = x - core.x, y - core.y
+    along, more = dx * core.ux + dy * core.uy, tolerance if side != 0 else 0.0
+    if core.back - more <= along <= core.front + more:
+        height = dy * core.ux - dx * core.uy
+        facing = 1.0 if (height >= 0.0 if side == 0 else side > 0) else -1.0
+        return -facing * core.uy, facing * core.ux, facing * height, along
+    nearest = core.front if along > core.front else core.back
+    dx, dy = dx - nearest * core.ux, dy - nearest * core.uy
+    distance = math.sqrt(dx * dx + dy * dy)
+    return dx / distance, dy / distance, distance, nearest

@@ -59,11 +59,11 @@ class PaddleGame(Game):
         return rules._replace(fields=rows(rules.fields), points=rows(rules.points), levels=levels)
 
     def written(self, state: State, rules: Rules) -> tuple[Array, ...]:
-        """Where the bumpers of a level are."""
+        """Return where the bumpers of a level are."""
         if not self.has_levels:
             return ()
         return tuple(a for a in (rules.levels.bumpers, state.circles, state.parts) if a is not None)
 
     def scene_on(self, level: int | None) -> Scene:
-        """The scene with its bumpers where they are on the level."""
+        """Return the scene with its bumpers where they are on the level."""
         return self.scenes[0] if level is None else level_scene(self.scenes[0], self.rules.levels, level)

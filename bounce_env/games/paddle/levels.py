@@ -51,7 +51,7 @@ class Levels(NamedTuple):
 
 
 def levels_of(scene: Scene, field: tuple[float, float, float, float], count: int | None, first: int) -> Levels:
-    """Of a scene, for one world; without levels (`count` None) an agent is told only of bumpers that move.
+    """Return of a scene, for one world; without levels (`count` None) an agent is told only of bumpers that move.
 
     field: lower left corner and size (x, y, width, height) [m]. Raises ValueError where a scene cannot have levels.
     """
@@ -83,7 +83,7 @@ def _check(levels: Levels) -> None:
 
 
 def level_scene(scene: Scene, levels: Levels, level: int) -> Scene:
-    """The scene of a level: `scene` with its bumpers where the kernel puts them."""
+    """Return the scene of a level: `scene` with its bumpers where the kernel puts them."""
     bumpers = levels.bumpers[:1].copy()
     _arranged(bumpers, levels, 0, level, MANY)
     rows = iter(bumpers[0])
@@ -100,7 +100,7 @@ def _moved(bumper: Bumper, row: Any) -> Bumper:
 
 @function
 def drawn_level(levels: Levels, seed: Any) -> int:
-    """The level of the episode with this seed: each as likely."""
+    """Return the level of the episode with this seed: each as likely."""
     count = levels.number if levels.number > 0 else END_OF_LEVELS - levels.first
     return levels.first + int(uniform(seed, LEVELS, 0) * count)
 
@@ -170,7 +170,7 @@ def _throw(bumper: Record, levels: Levels, level: int, index: int) -> None:
 
 @function
 def _fits(bumpers: Array, levels: Levels, scene: int, placed: int) -> bool:
-    """Whether a bumper's way keeps clear of the walls and of the bumpers that are placed already."""
+    """Return whether a bumper's way keeps clear of the walls and of the bumpers that are placed already."""
     bumper = bumpers[scene, placed]
     inset = bumper.radius + levels.gap
     if bumper.x1 > levels.area[2] - inset or bumper.y1 > levels.area[3] - inset:
@@ -189,7 +189,7 @@ _arranged = from_python(arrange)
 
 
 def bumper_bounds(levels: Levels) -> list[float]:
-    """The greatest of each number of `observe_bumpers`, either way."""
+    """Return the greatest of each number of `observe_bumpers`, either way."""
     fastest = max(1.0, levels.bumpers["speed"].max(initial=0.0) / FASTEST)
     rider = [1.0, 1.0, fastest, fastest, 1.0, 1.0, 1.0, 1.0]
     return [bound for bumper in levels.bumpers[0] for bound in (rider if bumper["part"] >= 0 else [1.0, 1.0])]

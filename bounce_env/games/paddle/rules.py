@@ -88,7 +88,7 @@ def play(rules: Rules, game: GameState, actions: Array, w: int) -> float:
 
 @function
 def _play(rules: Rules, game: GameState, actions: Array, w: int) -> float:
-    """The same, without shaping: returns the points."""
+    """Play the same step without shaping; return the points."""
     state, episode = game.state, game.episodes[w]
     clear_hits(state, w)
     resume(state, w)
@@ -118,7 +118,7 @@ def _play(rules: Rules, game: GameState, actions: Array, w: int) -> float:
 
 @function
 def step_quietly(rules: Rules, game: GameState, actions: Array, w: int) -> bool:
-    """The step of a world in which nothing happens; False, and nothing done that `play` would not do, where it may.
+    """Play the step of a world in which nothing happens; return False, with nothing changed, where something may.
 
     The rewards and ends of `results` are expected to say already that nothing happened.
 

@@ -100,7 +100,7 @@ def field_of(scene: Scene) -> tuple[float, float, float, float]:
 
 
 def new_rules(scene: Scene, options: PaddleOptions) -> Rules:
-    """The rules for one world that plays `scene`; see `field_of` for what it must have."""
+    """Return the rules for one world that plays `scene`; see `field_of` for what it must have."""
     field = field_of(scene)
     x, y, width, height = field
     paddle = next(i for i, e in enumerate(scene.elements) if isinstance(e, Paddle))

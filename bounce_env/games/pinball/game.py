@@ -105,7 +105,7 @@ class PinballGame(Game):
     def _bounds(
         self, layout: Layout, options: PinballOptions
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-        """Of what is observed."""
+        """Return of what is observed."""
         scene = self.scenes[0]
         x0, y0, x1, y1 = self.field
         assert scene.max_speed is not None

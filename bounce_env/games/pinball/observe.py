@@ -68,7 +68,7 @@ def observe(rules: Rules, game: GameState, w: int, out: Array) -> None:
 
 @function
 def observe_flippers(state: State, layout: Layout, w: int, out: Array, i: int) -> int:
-    """How far each flipper is up, 0 to 1, from `out[w, i]` on; returns where the next number goes."""
+    """Write how far each flipper is up, 0 to 1, from `out[w, i]` on; return where the next number goes."""
     for m in range(layout.sides.shape[1]):
         if layout.sides[state.worlds[w].scene, m]:
             out[w, i] = min(max(stroke_now(state, w, m), 0.0), 1.0)

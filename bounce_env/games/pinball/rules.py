@@ -83,7 +83,7 @@ def press(rules: Rules, game: GameState, w: int, buttons: int) -> None:
 
 @function
 def in_force(rules: Rules, game: GameState, w: int, code: int) -> int:
-    """The flippers' buttons in force: none while the ball has been held for too long, or the table is tilted.
+    """Return the flippers' buttons in force: none while the ball has been held for too long, or the table is tilted.
 
     A nudge acts at once.
     """
@@ -144,7 +144,7 @@ def play(rules: Rules, game: GameState, actions: Array, w: int) -> float:
 
 @function
 def lose_ball(rules: Rules, game: GameState, w: int) -> float:
-    """What follows when the ball has drained: it is given back, the next one follows, or the episode ends."""
+    """Return what follows when the ball has drained: it is given back, the next one follows, or the episode ends."""
     episode, memory = game.episodes[w], game.memory[w]
     if save_left(memory, episode.frames) > 0 and not memory.tilted:
         memory.saved = 1
@@ -178,7 +178,7 @@ def update_timers(rules: Rules, game: GameState, w: int) -> None:
 
 @function
 def in_zone(rules: Rules, game: GameState, w: int) -> bool:
-    """Whether the ball's centre is where a flipper may hold it."""
+    """Return whether the ball's centre is where a flipper may hold it."""
     table = rules.layout.tables[game.state.worlds[w].scene]
     x, y, _, _ = ball_now(game.state, w, 0)
     return table.zone_left <= x <= table.zone_right and y <= table.zone_top
@@ -202,7 +202,7 @@ def nudge(game: GameState, w: int, buttons: int) -> None:
 
 @function
 def step_quietly(rules: Rules, game: GameState, actions: Array, w: int) -> bool:
-    """The step of a world in which nothing happens: the same buttons, no event, and the clock changes nothing.
+    """Return the step of a world in which nothing happens: the same buttons, no event, and the clock changes nothing.
 
     False, and nothing done, where something may. The rewards and ends of `results` are expected to say so already.
     """
@@ -238,6 +238,6 @@ def step_quietly(rules: Rules, game: GameState, actions: Array, w: int) -> bool:
 
 @function
 def falls_from_high(rules: Rules, game: GameState, w: int) -> bool:
-    """Whether the ball is above the flippers' zone, to whichever side, in a flight that does not bend upwards."""
+    """Return whether the ball is above the flippers' zone in a flight that does not bend upwards."""
     table = rules.layout.tables[game.state.worlds[w].scene]
     return game.state.balls[w, 0].ay <= 0.0 and ball_now(game.state, w, 0)[1] > table.zone_top

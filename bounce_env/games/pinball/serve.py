@@ -54,7 +54,7 @@ def leave_lane(rules: Rules, game: GameState, w: int) -> None:
 
 @function
 def crossed(state: State, layout: Layout, w: int, scene: int) -> bool:
-    """Whether the ball has come into play in this frame."""
+    """Return whether the ball has come into play in this frame."""
     for element in range(state.hits.shape[1]):
         if layout.roles[scene, element] == IN_PLAY and state.hits[w, element] > 0:
             return True

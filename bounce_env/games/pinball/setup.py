@@ -64,7 +64,7 @@ HIDDEN = ("in_play", "plunger", "brace")
 
 
 def hidden_of(scene: Scene) -> tuple[int, ...]:
-    """The elements, by index, that pictures do not show."""
+    """Return the elements, by index, that pictures do not show."""
 
     def is_hidden(name: str) -> bool:
         return any(name == word or name.startswith(f"{word}_") for word in HIDDEN)
@@ -73,17 +73,17 @@ def hidden_of(scene: Scene) -> tuple[int, ...]:
 
 
 def word_of(name: str) -> str:
-    """The word that a name begins with, or "" if it is none that the game knows."""
+    """Return the word that a name begins with, or "" if it is none that the game knows."""
     return next((word for word in (*WORDS, "plunger") if name == word or name.startswith(f"{word}_")), "")
 
 
 def role_of(element: Element) -> int:
-    """What an element is to the game."""
+    """Return what an element is to the game."""
     return WORDS.get(word_of(element.name), NOTHING)
 
 
 def problems_of(scene: Scene) -> list[str]:
-    """Why a scene cannot be played as pinball; empty if it can."""
+    """Return why a scene cannot be played as pinball; empty if it can."""
     named = [(word_of(e.name), e) for e in scene.elements]
     plungers = [e for word, e in named if word == "plunger"]
     kinds = {

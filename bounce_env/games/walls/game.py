@@ -61,7 +61,7 @@ class WallsGame(Game):
         return "walls"
 
     def status(self, episode: Any, memory: Any) -> tuple[str, ...]:
-        """Which ball is played, and how long it still may be."""
+        """Return which ball is played, and how long it still may be."""
         left = max(BALL_FRAMES - (episode.frames - memory.born), 0)
         words = (f"Ball {episode.ball + 1} of {self.rules.balls}", f"{math.ceil(left / FPS)} s left")
         return (*words, *super().status(episode, memory))
@@ -71,6 +71,6 @@ class WallsGame(Game):
         return self.rules._replace(courts=np.repeat(self.rules.courts, worlds, axis=0))
 
     def written(self, state: State, rules: Rules) -> tuple[Array, ...]:
-        """Where the target is."""
+        """Return where the target is."""
         assert state.circle_sensors is not None
         return (state.circle_sensors,)

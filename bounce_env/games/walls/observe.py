@@ -32,5 +32,5 @@ def observe(rules: Rules, game: GameState, w: int, out: Array) -> None:
 
 @function
 def wall_now(state: State, w: int, part: int) -> tuple[float, float, float, float]:
-    """Where the ends of the player's wall are now: x, y, x, y [m]."""
+    """Return where the ends of the player's wall are now: x, y, x, y [m]."""
     return core_now(state, w, part)

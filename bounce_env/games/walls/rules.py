@@ -108,7 +108,7 @@ def drag(rules: Rules, game: GameState, w: int, seconds: float) -> None:
 
 @function
 def kept_inside(x: float, velocity: float, seconds: float, low: float, high: float) -> float:
-    """The velocity [m/s] with which a coordinate comes no further than a border in so many seconds."""
+    """Return the velocity [m/s] with which a coordinate comes no further than a border in so many seconds."""
     ahead = x + velocity * seconds
     if low <= ahead <= high:
         return velocity

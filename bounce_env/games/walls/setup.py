@@ -88,27 +88,27 @@ def new_rules(scene: Scene, options: WallsOptions) -> Rules:
 
 
 def is_target(element: Element) -> bool:
-    """Whether an element is what balls are to be brought to."""
+    """Return whether an element is what balls are to be brought to."""
     return element.name == "target"
 
 
 def is_dragged(element: Element) -> bool:
-    """Whether an element is the wall that the player drags."""
+    """Return whether an element is the wall that the player drags."""
     return isinstance(element, Wall) and element.draggable
 
 
 def dragged_wall(scene: Scene) -> Wall:
-    """The wall that the player drags."""
+    """Return the wall that the player drags."""
     return next(e for e in scene.elements if isinstance(e, Wall) and is_dragged(e))
 
 
 def longest(wall: Wall) -> float:
-    """How long [m] the player's wall may be."""
+    """Return how long [m] the player's wall may be."""
     return LONGEST * wall.shortest
 
 
 def problems_of(scene: Scene) -> Iterator[str]:
-    """Why a scene cannot be played."""
+    """Return why a scene cannot be played."""
     walls = [e for e in scene.elements if isinstance(e, Wall) and not e.draggable]
     dragged = [e for e in scene.elements if isinstance(e, Wall) and e.draggable]
     target = next(filter(is_target, scene.elements), None)
@@ -164,7 +164,7 @@ def _problems_of_field(scene: Scene) -> Iterator[str]:
 
 
 def _in_the_way(scene: Scene) -> Iterator[str]:
-    """What overlaps a ball somewhere where it may be launched.
+    """Return what overlaps a ball somewhere where it may be launched.
 
     A gap changes by no more than the ball moves: it is looked at every half of the ball's radius, and has to be half
     of that there.
@@ -183,7 +183,7 @@ def _in_the_way(scene: Scene) -> Iterator[str]:
 
 
 def target_radius(scene: Scene) -> float:
-    """Of the circle [m] that the ball's centre has to enter."""
+    """Return of the circle [m] that the ball's centre has to enter."""
     target = next(filter(is_target, scene.elements))
     assert isinstance(target, Sensor)
     assert target.circle is not None

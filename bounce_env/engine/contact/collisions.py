@@ -84,7 +84,7 @@ def _exchange_speeds(
 
 @function
 def _least_pair_rebound(one: Record, other: Record, nx: float, ny: float, distance: float, head: Record) -> float:
-    """The slowest [m/s] that one of two balls leaves the other one which it is pressed on; 0 where it is not."""
+    """Return the slowest [m/s] that one of two balls leaves the other one which it is pressed on; 0 where it is not."""
     g = pair_weight(one, other)
     along = (one.vx - other.vx) * ny - (one.vy - other.vy) * nx
     turn = along * along / distance  # what it takes to keep to the other one

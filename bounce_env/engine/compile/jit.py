@@ -144,19 +144,11 @@ def _borrowed(typing_context: Any, argument: Any) -> Any:
     return argument(argument), generate
 
 
-_borrow = intrinsic(_borrowed)
-
-
 def _borrow_interpreted(argument: Any) -> Any:
     return argument
 
 
-@function
-def _borrow_compiled(argument: Any) -> Any:
-    return _borrow(argument)
-
-
-borrow = _borrow_interpreted if numba.config.DISABLE_JIT else _borrow_compiled
+borrow = _borrow_interpreted if numba.config.DISABLE_JIT else intrinsic(_borrowed)
 """The same array, or (named) tuple of arrays, tuples and numbers, without reference counts.
 
 Numba counts references at every call that an array is passed to, atomically; over a batch that costs more than the

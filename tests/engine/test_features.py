@@ -4,8 +4,11 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 
 from bounce_env.engine.compile.jit import borrow, function, kernel, where
+
+pytestmark = pytest.mark.fast
 
 
 class Inner(NamedTuple):

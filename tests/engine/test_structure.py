@@ -7,10 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
+import numba
 import pytest
 
 import bounce_env
 from bounce_env import Ball, Scene, Wall, World
+
+pytestmark = pytest.mark.fast
 
 PACKAGE = Path(bounce_env.__file__).parent
 ENGINE = PACKAGE / "engine"
@@ -76,6 +79,10 @@ def calls_of(act: Callable[[], Any]) -> list[str]:
     return calls
 
 
+compiled = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="counts the calls of compiled code")
+
+
+@compiled
 def test_an_advance_in_which_nothing_happens_takes_six_calls():
     world = World(Scene(gravity=(0.0, -9.81), ball=Ball(radius=0.1), elements=(Wall((0.0, 0.0), (1.0, 0.0)),)))
     world.reset(position=(0.5, 0.9), velocity=(0.0, 0.0))
@@ -84,6 +91,7 @@ def test_an_advance_in_which_nothing_happens_takes_six_calls():
     assert 1 <= len(calls) <= 6, calls
 
 
+@compiled
 @pytest.mark.parametrize("game", ["Paddle", "Pinball", "Walls"])
 def test_a_step_of_an_environment_takes_twelve_calls(game: str):
     env = gym.make(f"Bounce/{game}-v0", disable_env_checker=True).unwrapped

@@ -9,6 +9,8 @@ import pytest
 from bounce_env import Ball, Bumper, Paddle, Scene, Sensor, Wall, World
 from bounce_env.engine.memory.records import BOUNCE, BUDGET, CROSSING, OK, OUT, PART_STOPS
 
+pytestmark = pytest.mark.fast
+
 BOX = (
     Wall((0.0, 0.0), (1.0, 0.0), name="floor"),
     Wall((1.0, 0.0), (1.0, 1.0), name="right"),

@@ -9,6 +9,8 @@ from bounce_env import Arc, Ball, Bumper, Paddle, Scene, Sensor, Wall, World
 from bounce_env.engine.memory.records import CROSSING
 from tests.stability.stability_case import new_world
 
+pytestmark = pytest.mark.fast
+
 ROOM = Scene(
     gravity=(0.0, -1.0),
     ball=Ball(radius=0.05, b=0.5),

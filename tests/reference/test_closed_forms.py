@@ -8,6 +8,8 @@ import pytest
 from bounce_env.engine.world import World
 from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall
 
+pytestmark = pytest.mark.fast
+
 FLOOR = Wall((-100, 0), (100, 0), name="floor")
 
 

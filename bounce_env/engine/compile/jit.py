@@ -42,7 +42,10 @@ INLINED = {
 
 
 def function(python_function: F) -> F:
-    """Compile a function that kernels call; Python calls it through `from_python`."""
+    """Compile a function that kernels call; Python calls it through `from_python`.
+
+    It may read and write arrays, but neither make nor return them.
+    """
     compiled: F = numba.njit(**INLINED)(python_function)
     return compiled
 

@@ -13,6 +13,7 @@ from urllib.request import url2pathname
 from gymnasium.error import DependencyNotInstalled
 
 CPU_TORCH = "https://download.pytorch.org/whl/cpu"
+
 WITH_TORCH = ("sb3", "train", "test", "dev")
 """Extras that install PyTorch."""
 

@@ -29,8 +29,10 @@ from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor, Wall
 from bounce_env.wording import nearest, numbers, real, shown, whole
 
 Floats = npt.NDArray[np.float64]
+
 LARGEST = 1e15
 """No number that a world is handed is larger [m, m/s, s]: products of a few stay far from overflow in float64."""
+
 MAX_EVENTS = 1_000_000
 MOST_EVENTS = 2**62
 MAX_BALLS = 64

@@ -23,12 +23,16 @@ from bounce_env.scene.base import Spec
 from bounce_env.scene.fields import Allowed, one_of, real_number, true_or_false, whole_number
 
 Pixels = npt.NDArray[np.uint8]
+
 OBSERVED_SIZE = 84
 """Width and height of observed frames for which no size was asked, pixels: as agents for Atari games see."""
+
 LONGEST_TRAIL = 60.0
 """Seconds of a trail: more would cover the field."""
+
 _MOST_LEVELS = 256
 """Levels and sizes of which renderers are kept."""
+
 _PIXELS = f"None or an integer from 1 to {LARGEST_SIDE} (pixels)"
 Side = Annotated[int | None, Allowed(_PIXELS, whole_number(1, LARGEST_SIDE, none=True))]
 Seconds = Annotated[

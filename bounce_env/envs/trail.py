@@ -10,6 +10,7 @@ from bounce_env.engine.memory.records import OUT
 
 SPACING = 1 / 60
 """Seconds between two points of a flight: closer than one can tell from the curve."""
+
 SAME_PLACE = 1e-6
 """Metres: a flight that leads this near to where the next one begins was not interrupted."""
 

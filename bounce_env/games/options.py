@@ -16,10 +16,16 @@ from bounce_env.scene.errors import own_words
 from bounce_env.scene.fields import Allowed, instance_of, not_allowed, real_number, true_or_false, whole_number
 
 CONFIG = ConfigDict(arbitrary_types_allowed=True, extra="forbid")
+
 LONGEST_TIME = 1e9
 """Seconds of play that may be asked for: about thirty years."""
+
+END_OF_LEVELS = 2**31
+"""The first number that is no level."""
+
 options_class = own_words(lambda text, problems: ValueError(text), named=False)
 """The decorator of all options."""
+
 _SOURCE = "None, the name of a built-in scene, the path of a .toml file, a Scene, or a dict of one"
 _PROBABILITY = "a number >= 0 and < 1"
 _SECONDS = f"None, or a number > 0 and <= {LONGEST_TIME:g} (seconds)"

@@ -9,12 +9,14 @@ import numpy.typing as npt
 
 from bounce_env.engine.placement import part_cores_at_start, place_clear
 from bounce_env.games.game import Game
-from bounce_env.games.paddle.levels import END_OF_LEVELS
+from bounce_env.games.options import END_OF_LEVELS
 from bounce_env.wording import at_least, at_most, nearest, numbers, shown
 
 PAIRS = ("position", "velocity")
+
 SLACK = 1e-12
 """As a share of the field: a place on its border, as messages print it, is on the field."""
+
 LEVEL = "level"
 
 

@@ -10,6 +10,7 @@ from bounce_env.games.options import Options
 MAX_EVENTS = 10_000
 """In one step or frame; more end the episode. A ball that all but stands on the end of a wall leaves it in more than a
 thousand tiny hops."""
+
 NO_STEP_LIMIT = 2**62
 """More steps than any episode has."""
 

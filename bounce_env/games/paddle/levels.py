@@ -14,24 +14,26 @@ from bounce_env.engine.compile.jit import Record, from_python, function, where
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.readout import offset_now
+from bounce_env.games.options import END_OF_LEVELS
 from bounce_env.games.playfield import place_seen
 from bounce_env.games.streams import LAYOUTS, LEVELS, uniform
 from bounce_env.scene import Bumper, Scene, moves
 
 MOVING_FROM = 10
 """Below this level the bumpers on rails stand still."""
+
 RAIL = (0.1, 0.3)  # of a field's width: how far a bumper travels
 SPEED = (0.1, 0.4)  # m/s, of its way
 LOWEST = 0.48  # of a field's height: the lowest that a bumper's centre may be, well above where a ball is launched
 GAP = 2.5  # ball radii between two bumpers and to the walls, so that a ball always passes
 FASTEST = SPEED[1]  # m/s; the speed of a bumper that is observed as 1
 NONE = -1  # levels
-END_OF_LEVELS = 2**31  # the first number that is none
 TRIES = 16  # places for each bumper, until a layout is given up
 NUMBERS = 5  # that are drawn for one
 
 # Layouts that may be begun for a level: of a scene that may have levels, few must do; then many always do.
 FEW, MANY = 4, 1_000_000
+
 BUMPER = record(
     x0="f8", y0="f8", x1="f8", y1="f8",  # [m] its centre's way there and back, which is parallel to an axis
     speed="f8",  # [m/s]

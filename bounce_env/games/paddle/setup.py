@@ -1,4 +1,4 @@
-"""What a user may choose of every game."""
+"""What is fixed before a paddle game begins: options, constants, and what its functions know of a scene."""
 
 import math
 from typing import Annotated, Literal, NamedTuple, Self
@@ -9,8 +9,8 @@ from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.packing import segment_direction
-from bounce_env.games.options import CONFIG, Gamma, Options, TimeLimit, options_class, refuse
-from bounce_env.games.paddle.levels import END_OF_LEVELS, Levels, levels_of
+from bounce_env.games.options import CONFIG, END_OF_LEVELS, Gamma, Options, TimeLimit, options_class, refuse
+from bounce_env.games.paddle.levels import Levels, levels_of
 from bounce_env.games.timing import Pace, pace_of
 from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
 from bounce_env.scene.fields import Allowed, one_of, whole_number
@@ -19,7 +19,7 @@ from bounce_env.scene.fields import Allowed, one_of, whole_number
 @options_class
 @dataclass(frozen=True, kw_only=True, config=CONFIG)
 class PaddleOptions(Options):
-    """Of the paddle game."""
+    """What a user may choose of the paddle game."""
 
     action: Annotated[Literal["continuous", "discrete"], one_of("continuous", "discrete")] = "continuous"
     reward: Annotated[Literal["score", "dense"], one_of("score", "dense")] = "score"
@@ -51,6 +51,7 @@ LAUNCH_ANGLE = (math.radians(30.0), math.radians(150.0))
 REFERENCE_SPEED = 2.0  # m/s; the speed that is observed as 1
 POINTS = 1.0  # a bumper hit
 OBSERVATION_SIZE = 5
+
 FIELD = record(
     x="f8", width="f8", y="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
     x_scale="f8", y_scale="f8", rail_scale="f8",  # [1/m] from metres to the observation

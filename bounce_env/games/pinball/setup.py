@@ -1,4 +1,4 @@
-"""What a user may choose of every game."""
+"""What is fixed before a ball of pinball is shot: options, the table's elements, the rules' constants and memory."""
 
 import math
 from typing import Annotated, Any, Literal, NamedTuple
@@ -18,7 +18,7 @@ from bounce_env.scene.fields import one_of
 @options_class
 @dataclass(frozen=True, kw_only=True, config=CONFIG)
 class PinballOptions(Options):
-    """Of the pinball game."""
+    """What a user may choose of the pinball game."""
 
     action: Annotated[Literal["discrete", "buttons"], one_of("discrete", "buttons")] = "discrete"
     reward: Annotated[Literal["dense", "score"], one_of("dense", "score")] = "dense"
@@ -29,6 +29,7 @@ class PinballOptions(Options):
 
 # What an element is to the game.
 NOTHING, BUMPER, SLINGSHOT, TARGET, ROLLOVER, FLIPPER, IN_PLAY = 0, 1, 2, 3, 4, 5, 6
+
 WORDS = {
     "bumper": BUMPER,
     "slingshot": SLINGSHOT,
@@ -38,8 +39,10 @@ WORDS = {
     "flipper_right": FLIPPER,
     "in_play": IN_PLAY,
 }
+
 MOST_LAMPS = 62
 """Targets, and rollovers, of one table at most: each is a bit of one number."""
+
 TABLE = record(
     x="f8", y="f8", x_scale="f8", y_scale="f8",  # [m, 1/m] from metres to what is observed as [-1, 1]
     plunger_x="f8", plunger_y="f8", up_x="f8", up_y="f8",  # [m] where a ball is shot from; unit vector, against gravity
@@ -201,6 +204,7 @@ TILT, TILT_PER_FRAME = 3.0, 0.5 / FPS
 # What is counted, in the order of `PinballGame.counters`.
 BY_BUMPERS, BY_SLINGSHOTS, BY_TARGETS, BY_ROLLOVERS = 0, 1, 2, 3
 BANKS, TOUCHES, FLIPS, SAVES, STUCK_FREED, HOLD_RELEASED, NUDGES, TILTS = 4, 5, 6, 7, 8, 9, 10, 11
+
 MEMORY = record(
     lit="i8", passed="i8",  # bits: targets that are lit, rollovers that are not any more
     multiplier="i8",

@@ -1,4 +1,4 @@
-"""What a user may choose of every game."""
+"""What is fixed before a game of walls begins: options, constants, and what its functions know of a scene."""
 
 import math
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ from bounce_env.wording import at_least, at_most
 @options_class
 @dataclass(frozen=True, kw_only=True, config=CONFIG)
 class WallsOptions(Options):
-    """Of the game of walls."""
+    """What a user may choose of the game of walls."""
 
     reward: Annotated[Literal["sparse", "dense"], one_of("sparse", "dense")] = "sparse"
     gamma: Gamma = 0.99
@@ -41,6 +41,7 @@ TARGET_CLEAR = 0.25  # of the field's diagonal: a target is no nearer to where i
 TRIES = 128  # places drawn for a target, of which the last one stands whatever leads to it
 OBSERVATION_SIZE = 12
 CONTROLS = 4
+
 COURT = record(
     x="f8", y="f8", width="f8", height="f8",  # [m] lower left corner and size of what is observed as [-1, 1]
     x_scale="f8", y_scale="f8",  # [1/m] from metres to the observation

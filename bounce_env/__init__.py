@@ -80,8 +80,8 @@ def __getattr__(name: str) -> Any:
         from bounce_env.extras import version  # noqa: PLC0415
 
         return version()
-    if name == "cards":
-        return import_module("bounce_env.cards")
+    if name in ("cards", "vector"):
+        return import_module(f"bounce_env.{name}")
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_HOME[name]), name)

@@ -106,6 +106,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 30}  # noqa: RUF012 (Gymnasium's)
     own_keywords: ClassVar[Mapping[str, Any]] = {"render_mode": None}
+    _vector_env: ClassVar[Any]  # of the same game, once it was asked for
 
     def __init__(self, **keywords: Any) -> None:
         game, view, own = self.sorted_out(keywords)

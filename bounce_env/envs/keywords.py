@@ -16,9 +16,6 @@ from bounce_env.games.game import Game
 from bounce_env.scene import SceneError, builtin_scenes, scene_to_dict
 from bounce_env.wording import shown, unknown_name
 
-FIRST = "num_envs"
-"""The one keyword that may be given by position: that of a vector environment."""
-
 
 class HasKeywords:
     """Base of all environments: what they take by keyword, and their `spec`.

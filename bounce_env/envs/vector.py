@@ -307,10 +307,17 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
 
 
 def vector_env_of(single: type[BounceEnv]) -> type[BounceVectorEnv]:
-    """Return the vector environment of the game of a single one: its card, its keywords, its name with Vector in it."""
-    name = single.__name__.removesuffix("Env") + "VectorEnv"
-    members = {"__doc__": single.__doc__, "__module__": single.__module__, "game_type": single.game_type}
-    return type(name, (BounceVectorEnv,), members)
+    """Return the vector environment of the game of a single one: its card, its keywords, its name with Vector in it.
+
+    The same one each time. Methods that the single environment's class overrides are not in it.
+    """
+    made: type[BounceVectorEnv] | None = single.__dict__.get("_vector_env")
+    if made is None:
+        name = single.__name__.removesuffix("Env") + "VectorEnv"
+        members = {"__doc__": single.__doc__, "__module__": single.__module__, "game_type": single.game_type}
+        made = type(name, (BounceVectorEnv,), members)
+        single._vector_env = made
+    return made
 
 
 def called(world: OneWorld, name: str, *args: Any, **kwargs: Any) -> Any:

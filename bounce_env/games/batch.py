@@ -159,7 +159,7 @@ class Batch:
     def _digest(self) -> str:
         """Of all that a state belongs to: who looks ahead clones and restores before every step."""
         game = self.game
-        text = repr((type(game).__name__, game.scenes, replace(game.options, scene=None)))
+        text = repr((type(game).__module__, type(game).__qualname__, game.scenes, replace(game.options, scene=None)))
         return hashlib.sha256(text.encode()).hexdigest()
 
     def end_info(self) -> dict[str, Array]:

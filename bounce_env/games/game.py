@@ -47,8 +47,8 @@ class Game:
         self.step_seconds = options.frame_skip / FPS
 
     @property
-    def default_scene(self) -> str:
-        """The built-in scene that is played where the user chose none."""
+    def default_scene(self) -> str | Scene:
+        """The scene, or name of a built-in one, that is played where the user chose none."""
         raise NotImplementedError
 
     def rules_for(self, worlds: int) -> Any:

@@ -11,6 +11,7 @@ and these compiled functions:
 """
 
 import functools
+import hashlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -19,12 +20,16 @@ from numba.extending import overload
 
 from bounce_env.engine.compile.cache import follow_sources
 from bounce_env.engine.compile.jit import INLINED, interpreted
+from bounce_env.wording import shown
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 Functions = dict[str, Callable[..., Any]]
 
 _games: dict[type, Functions] = {}
+
+_defined: dict[str, int] = {}
+"""How often a type of rules of this name was defined: in a notebook that may be many times."""
 
 
 def define_game(
@@ -37,12 +42,29 @@ def define_game(
 ) -> None:
     """Let these functions, compiled by `engine.compile.jit.function`, be what the game with this type of rules does.
 
-    Of a game outside of the package the kernels that are kept on disk depend on the files that define the functions,
-    and those beside them.
+    Of a game outside of the package the kernels that are kept on disk depend on the modules that define the functions,
+    and those beside them (`engine.compile.cache.follow_sources`). Raises TypeError for what is no NamedTuple type, and
+    ValueError where it is that of a game already.
     """
+    if not (isinstance(rules, type) and issubclass(rules, tuple) and hasattr(rules, "_fields")):
+        raise TypeError(f"rules = {shown(rules)}: must be a subclass of NamedTuple")
+    if rules in _games:
+        raise ValueError(f"rules = {shown(rules)}: must be a type of their own, these are a game's already")
+    _tell_apart(rules)
     functions = {"begin": begin, "play": play, "observe": observe, "step_quietly": step_quietly or _always_play}
     _games[rules] = {name: interpreted(given) for name, given in functions.items()}
     follow_sources(rules, {Path(given.__code__.co_filename) for given in _games[rules].values()})
+
+
+def _tell_apart(rules: type) -> None:
+    """Give a type of rules a name that no other has.
+
+    Numba knows named tuples by the names of type and fields alone: two games with `class Rules(NamedTuple)` would play
+    each other's functions. The name is the same in each process, unless a type is defined again in one.
+    """
+    place = f"{rules.__module__}.{rules.__qualname__}"
+    _defined[place] = _defined.get(place, 0) + 1
+    rules.__name__ = f"{rules.__name__}_{hashlib.sha256(place.encode()).hexdigest()[:12]}_{_defined[place]}"
 
 
 def _always_play(rules: Any, game: Any, actions: Any, w: int) -> bool:

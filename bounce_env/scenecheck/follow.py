@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from bounce_env.engine.compile.jit import borrow, function, kernel
 from bounce_env.engine.events.flights import place
-from bounce_env.engine.events.loop import DONE, OUT_OF_BUDGET, clear_hits, restart, resume, run
+from bounce_env.engine.events.loop import BUDGET_SPENT, DONE, clear_hits, restart, resume, run
 from bounce_env.engine.memory.records import CRUSHED, HELD, OUT, Array, record
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.readout import ball_now
@@ -81,7 +81,7 @@ def _follow(state: State, watch: Watch, w: int, start: Array, fate: Any, seen: A
     x, y, since, in_place = start[0], start[1], 0.0, 0  # where it is, from when on and for how many events
     fate.end, fate.run, fate.scored, fate.events = PLAYING, 0, 0, 0
     fate.reached = 0.0 if _is_inside(watch.boxes, x, y) else -1.0
-    code = OUT_OF_BUDGET
+    code = BUDGET_SPENT
     while code != DONE and fate.end == PLAYING:
         resume(state, w)
         code = run(state, w, watch.seconds, 0.0, 1, None)

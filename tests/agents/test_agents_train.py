@@ -45,7 +45,6 @@ Bounce/Paddle-v0:
   learning_rate: lin_1e-3
   policy_kwargs: {net_arch: [8], log_std_init: -0.5}
 """
-UPDATES = 2048 // 128 * 2  # of the network: minibatches times epochs
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,6 @@ capsule_time = from_python(capsule.capsule_time)
 stretching_wall_time = from_python(stretching_wall.stretching_wall_time)
 
 SAMPLES = 4001
-REACH = 4.0  # m: the ball starts no further away
 
 
 def gap(t, ball, angle, spin, drift, back, front, reach):

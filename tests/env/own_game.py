@@ -8,7 +8,7 @@ from pydantic.dataclasses import dataclass
 
 from bounce_env import Ball, Paddle, Scene, Sensor, Wall
 from bounce_env import games as g
-from bounce_env.envs import BounceEnv
+from bounce_env.envs import BounceEnv, vector_env_of
 from bounce_env.games import function
 
 FIELD = Scene(
@@ -98,6 +98,8 @@ class OwnGame(g.Game):
 
     def __init__(self, options):
         super().__init__(options)
+        if self.scenes[0].elements != FIELD.elements:  # TARGET and PADDLE are places in this scene
+            raise ValueError("scene: must be left out, the game has one of its own")
         self.rules = Rules(g.pace_of(options))
         self.actions = g.Continuous(1)
         self.field = (0.0, 0.0, 1.0, 1.0)
@@ -109,3 +111,6 @@ class OwnEnv(BounceEnv):
     """Keep the ball in play, and send it through the target."""
 
     game_type = OwnGame
+
+
+OwnVectorEnv = vector_env_of(OwnEnv)

@@ -1,6 +1,7 @@
 """A game outside of the package (own_game.py): Gymnasium's checks, the vector env, SB3, and kernels kept on disk."""
 
 import os
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,10 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import bounce_env
-from tests.env.own_game import OwnEnv
+from bounce_env.engine.compile import cache
+from bounce_env.envs import BounceEnv
+from bounce_env.games import define_game
+from tests.env.own_game import OwnEnv, Rules, begin, observe, play
 
 pytestmark = pytest.mark.slow
 
@@ -60,6 +64,7 @@ def test_it_is_drawn():
     assert env.render().shape == (80, 80, 3)
 
 
+@pytest.mark.train
 def test_sb3_trains_on_it():
     from stable_baselines3 import PPO
 
@@ -68,6 +73,95 @@ def test_sb3_trains_on_it():
     envs = BounceVecEnv(OWN, 4)
     PPO("MlpPolicy", envs, n_steps=32, batch_size=64, n_epochs=1, device="cpu").learn(256)
     envs.close()
+
+
+def test_it_is_sent_copied_and_told_in_json():
+    env = gym.make(OWN)
+    env.reset(seed=3)
+    other = pickle.loads(pickle.dumps(env))
+    assert other.step([0.5])[0].tobytes() == env.step([0.5])[0].tobytes()
+    again = gym.make(gym.envs.registration.EnvSpec.from_json(env.spec.to_json()))
+    assert again.reset(seed=3)[0].tobytes() == gym.make(OWN).reset(seed=3)[0].tobytes()
+
+
+def test_its_scene_is_its_own():
+    with pytest.raises(ValueError, match="scene: must be left out"):
+        gym.make(OWN, scene="pinball")
+
+
+@pytest.mark.parametrize(
+    ("env_id", "env", "keywords", "words"),
+    [
+        (3, OwnEnv, {}, "env_id = 3: must be a string"),
+        (OWN, None, {}, "env = None: must be a subclass of BounceEnv with a game_type"),
+        (OWN, BounceEnv, {}, "must be a subclass of BounceEnv with a game_type"),
+        (OWN, OwnEnv, {"time_limt": 3.0}, "time_limt = 3.0: unknown keyword .did you mean 'time_limit'"),
+    ],
+)
+def test_what_cannot_be_registered(env_id, env, keywords, words):
+    with pytest.raises(TypeError, match=words):
+        bounce_env.register(env_id, env, **keywords)
+
+
+def test_rules_that_are_none_or_another_games():
+    functions = {"begin": begin, "play": play, "observe": observe}
+    with pytest.raises(TypeError, match=r"rules = .*int.*: must be a subclass of NamedTuple"):
+        define_game(int, **functions)
+    with pytest.raises(ValueError, match="must be a type of their own"):
+        define_game(Rules, **functions)
+
+
+def test_what_a_kernel_depends_on(tmp_path):
+    """A module beside the game, a package above it; what lies in no file is not kept."""
+    beside, above = tmp_path / "loose", tmp_path / "package" / "inner"
+    for folder in (beside, above):
+        folder.mkdir(parents=True)
+        (folder / "game.py").write_text("")
+    for folder in (above, above.parent):
+        (folder / "__init__.py").write_text("")
+    helpers = {beside: beside / "helper.py", above: above.parent / "constants.py"}
+    for folder, helper in helpers.items():
+        kind = type("Rules", (), {})
+        seen = []
+        for text in ("X = 1\n", "X = 2\n"):
+            helper.write_text(text)
+            cache.follow_sources(kind, {folder / "game.py"})
+            seen.append(cache._foreign[kind])
+        assert None not in seen
+        assert seen[0] != seen[1]
+    cache.follow_sources(kind, {Path("<stdin>")})
+    assert cache._foreign[kind] is None
+
+
+TWO = """
+import importlib, pathlib, sys
+import gymnasium as gym, bounce_env
+import one, other
+seen = []
+for n, module in enumerate((one, other)):
+    bounce_env.register(f"Own/Game{n}-v0", module.OwnEnv)
+    seen.append(float(gym.make(f"Own/Game{n}-v0", disable_env_checker=True).reset(seed=0)[0][1]))
+path = pathlib.Path(one.__file__)
+path.write_text(path.read_text().replace("0.5, 0.4", "0.5, 0.7"))
+sys.dont_write_bytecode = True
+bounce_env.register("Own/Game2-v0", importlib.reload(one).OwnEnv)
+seen.append(float(gym.make("Own/Game2-v0", disable_env_checker=True).reset(seed=0)[0][1]))
+print(*(round(y, 3) for y in seen))
+"""
+
+
+def test_two_games_with_rules_of_one_name_and_one_that_is_defined_again(tmp_path):
+    """Numba tells named tuples apart by the names of type and fields alone."""
+    source = (Path(__file__).parent / "own_game.py").read_text()
+    assert source.count("w, 0, 0.5, 0.4,") == 1
+    (tmp_path / "one.py").write_text(source)
+    (tmp_path / "other.py").write_text(source.replace("w, 0, 0.5, 0.4,", "w, 0, 0.5, 0.6,"))
+    package = Path(bounce_env.__file__).parents[1]
+    places = {"PYTHONPATH": f"{tmp_path}{os.pathsep}{package}", "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    environment = {**os.environ, **places, "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run([sys.executable, "-c", TWO], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["-0.2", "0.2", "0.4"]
 
 
 PLAY = """

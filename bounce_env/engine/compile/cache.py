@@ -18,8 +18,8 @@ from numba.core import types as nb_types
 
 PACKAGE = Path(__file__).resolve().parents[2]
 
-_foreign: dict[type, str] = {}
-"""Types of named tuples from outside of the package, with a hash of the sources that kernels take from there."""
+_foreign: dict[type, str | None] = {}
+"""Types of named tuples from outside of the package, with a hash of the sources there; None: they lie in no file."""
 
 
 @functools.cache
@@ -41,17 +41,28 @@ def sources_hash(folder: Path) -> str:
 def follow_sources(kind: type, files: Iterable[Path]) -> None:
     """Let kernels that are compiled for named tuples of this type depend on these files, if they are not the package's.
 
-    And on what lies beside them, where that is a package of its own.
+    And on the modules beside them; of a package on all of it. What these import from elsewhere is not followed. Code
+    that lies in no file (a notebook, a prompt) cannot be found again: its kernels are not kept.
     """
-    foreign = {file.resolve() for file in files if PACKAGE not in file.resolve().parents and file.is_file()}
-    if foreign:
-        for folder in {file.parent for file in foreign if (file.parent / "__init__.py").is_file()}:
-            foreign |= set(folder.glob("*.py"))
-        digest = hashlib.sha256()
-        for path in sorted(foreign):
-            digest.update(path.as_posix().encode())
-            digest.update(path.read_bytes())
-        _foreign[kind] = digest.hexdigest()
+    foreign = {file.resolve() for file in files if PACKAGE not in file.resolve().parents}
+    if not foreign:
+        return
+    sources = {path for file in foreign if file.is_file() for path in _modules_around(file)}
+    digest = hashlib.sha256()
+    for path in sorted(sources):
+        digest.update(path.as_posix().encode())
+        digest.update(path.read_bytes())
+    _foreign[kind] = digest.hexdigest() if all(file.is_file() for file in foreign) else None
+
+
+def _modules_around(file: Path) -> Iterable[Path]:
+    """The modules in the folder of a file, or in the whole package that it is in."""
+    top = file.parent
+    if not (top / "__init__.py").is_file():
+        return top.glob("*.py")
+    while (top.parent / "__init__.py").is_file():
+        top = top.parent
+    return top.rglob("*.py")
 
 
 class KernelCache(caching.FunctionCache):  # type: ignore[misc]
@@ -74,7 +85,7 @@ class KernelCache(caching.FunctionCache):  # type: ignore[misc]
         if kinds:
             cache = self._beside(kinds)
             if cache is None:
-                return _say_compiling("in each process, as the game is defined in a script: put it into a module")
+                return _say_compiling("in each process, as the game is in a script or notebook: put it into a module")
             return cache._load(sig, target_context)
         return self._load(sig, target_context)
 
@@ -87,7 +98,8 @@ class KernelCache(caching.FunctionCache):  # type: ignore[misc]
 
     def _beside(self, kinds: list[type]) -> "KernelCache | None":
         """Return the cache for these types from outside of the package; None where there can be none."""
-        if any(kind.__module__ == "__main__" for kind in kinds):
+        hashes = [_foreign[kind] for kind in kinds]
+        if None in hashes or any(kind.__module__ == "__main__" for kind in kinds):
             return None
         names = " ".join(f"{kind.__module__}.{kind.__qualname__}" for kind in kinds)
         other = copy.copy(self)
@@ -96,7 +108,7 @@ class KernelCache(caching.FunctionCache):  # type: ignore[misc]
             filename_base=f"{self._impl.filename_base}.{hashlib.sha256(names.encode()).hexdigest()[:12]}",
             source_stamp=self._impl.locator.get_source_stamp(),
         )
-        other._cache_file._version = " ".join([self._cache_file._version, *(_foreign[kind] for kind in kinds)])
+        other._cache_file._version = " ".join([self._cache_file._version, *map(str, hashes)])
         return other
 
     def _load(self, sig: Any, target_context: Any) -> Any:

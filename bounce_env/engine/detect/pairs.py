@@ -58,7 +58,7 @@ def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float
             if off >= 0.0:
                 return math.inf, 0.0
             # Of balls that are a little deep in each other a search would find no hit. Pressed for sure, though one
-            # moves along the other: `_least_rebound` is to find so, too, or it would be told of for ever.
+            # moves along the other: `_least_pair_rebound` is to find so, too, or it would be told of for ever.
             if off + turn < -2.0 * PRESSING * (pair_weight(one, other) + turn):
                 return hi, lo
         elif closing > 0.0 and may_pair_wait(state.worlds[w], closing, hi, lo):

@@ -26,7 +26,7 @@ from bounce_env.engine.motion.parts import part_offset_at, part_stop_instant
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
 
 # How a run of the loop ends.
-DONE, OUT_OF_BUDGET, LEDGER_FULL = 0, 1, 2
+DONE, BUDGET_SPENT, LEDGER_FULL = 0, 1, 2
 
 # What comes next.
 NOTHING, OF_BALL, OF_PAIR, OF_PART = -1, 0, 1, 2
@@ -38,7 +38,7 @@ ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 7
 
 @function
 def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table) -> int:
-    """Process the events of world `w` up to and including an instant; DONE, OUT_OF_BUDGET or LEDGER_FULL.
+    """Process the events of world `w` up to and including an instant; DONE, BUDGET_SPENT or LEDGER_FULL.
 
     At most `max_events` of them since `resume`.
     Unless DONE, the world's time is that of its last event, and the next call goes on from there.
@@ -51,7 +51,7 @@ def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int,
             return DONE
         if world.events >= max_events:
             _stop_for_budget(state, w)
-            return OUT_OF_BUDGET
+            return BUDGET_SPENT
         if ledger is not None and world.rows + ROWS_AT_ONE_EVENT > len(ledger):
             return LEDGER_FULL
         world.time_hi, world.time_lo = hi, lo

@@ -18,7 +18,7 @@ def record(**fields: str) -> np.dtype[Any]:
 SCENE = record(
     # How many rows of each table this scene uses.
     elements="i8", faces="i8", circles="i8", arcs="i8", sensors="i8", circle_sensors="i8", fields="i8", parts="i8",
-    extent="f8",  # [m] the largest coordinate of the scene plus the ball's radius: the scale of round-off
+    extent="f8",  # [m] the scale of round-off, see `packing.scene_extent`
     max_speed="f8",  # [m/s] inf where the scene has no cap
     rest_speed="f8",  # [m/s]
     ball_radius="f8", ball_b="f8",

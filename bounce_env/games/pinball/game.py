@@ -39,7 +39,7 @@ define_game(Rules, begin=begin, play=play, observe=observe, step_quietly=step_qu
 class PinballGame(Game):
     """The pinball game for a batch: scene and rules, and what an agent sees and does.
 
-    Raises ValueError where the scene cannot be played (`games.table`), SceneError where it cannot be read.
+    Raises ValueError where the scene cannot be played (`games.pinball.setup`), SceneError where it cannot be read.
     """
 
     options_type = PinballOptions

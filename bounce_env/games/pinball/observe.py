@@ -1,4 +1,4 @@
-"""What a player of pinball sees: see the card of `bounce_env.cards.PinballEnv`."""
+"""What a player of pinball sees: see the card of `bounce_env.PinballEnv`."""
 
 from bounce_env.engine.compile.jit import function, where
 from bounce_env.engine.memory.records import Array
@@ -29,7 +29,7 @@ REFERENCE_SPEED = 1.0  # m/s; the speed that is observed as 1
 
 @function
 def observe(rules: Rules, game: GameState, w: int, out: Array) -> None:
-    """What the card of `bounce_env.cards.PinballEnv` says, in its order."""
+    """What the card of `bounce_env.PinballEnv` says, in its order."""
     state, layout = game.state, rules.layout
     memory, episode, world = game.memory[w], game.episodes[w], state.worlds[w]
     scene = world.scene

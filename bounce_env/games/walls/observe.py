@@ -13,7 +13,7 @@ from bounce_env.games.walls.setup import BALL_FRAMES, OBSERVATION_SIZE, REFERENC
 
 @function
 def observe(rules: Rules, game: GameState, w: int, out: Array) -> None:
-    """Ball, the wall's ends, target, time and balls that are left: see the card of `bounce_env.cards.WallsEnv`."""
+    """Ball, the wall's ends, target, time and balls that are left: see the card of `bounce_env.WallsEnv`."""
     state, episode = game.state, game.episodes[w]
     court = rules.courts[state.worlds[w].scene]
     x, y, vx, vy = ball_now(state, w, 0)

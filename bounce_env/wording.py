@@ -114,3 +114,8 @@ def _holds_bools(value: Any) -> bool:
     if isinstance(value, list | tuple):
         return any(map(_holds_bools, value))
     return isinstance(value, bool | np.bool_)
+
+
+def counted(count: int, noun: str) -> str:
+    """Return how many there are of what `noun` says."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"

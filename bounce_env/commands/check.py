@@ -6,10 +6,11 @@ from functools import partial
 
 from tqdm import tqdm
 
-from bounce_env.commands.cli import FINE, PROBLEMS, Refused, check_range, counted, say
+from bounce_env.commands.cli import FINE, PROBLEMS, Refused, check_range, say
 from bounce_env.commands.scenes import check_named, outline
 from bounce_env.scene import SceneError, load_scene
 from bounce_env.scenecheck import Finding, NoRoomError, Survey, findings, survey
+from bounce_env.wording import counted
 
 MOST_BALLS = 100_000_000
 MOST_SCORES = 1_000_000

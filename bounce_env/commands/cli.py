@@ -26,8 +26,3 @@ def complain(text: str) -> int:
     """Say on stderr why nothing was done; returns the exit code for it."""
     print(f"error: {text}", file=sys.stderr)  # noqa: T201
     return BAD_USAGE
-
-
-def counted(count: int, noun: str) -> str:
-    """Return how many there are of what `noun` says."""
-    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from bounce_env.commands.cli import FINE, PROBLEMS, Refused, counted, say
+from bounce_env.commands.cli import FINE, PROBLEMS, Refused, say
 from bounce_env.files import replacing
 from bounce_env.scene import Scene, SceneError, builtin_scenes, load_scene
-from bounce_env.wording import nearest
+from bounce_env.wording import counted, nearest
 
 
 def list_scenes() -> int:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from bounce_env.engine.packing import scene_extent, segment_direction, sin_cos
 from bounce_env.engine.tolerances import START_OVERLAP
 from bounce_env.scene import Arc, Bumper, Element, Flipper, Paddle, Part, Scene, Wall
-from bounce_env.scene.errors import label
+from bounce_env.scene.errors import describe_element
 from bounce_env.wording import at_least
 
 Point = tuple[float, float]
@@ -86,11 +86,6 @@ def _part_core_at_start(part: Part) -> Core:
     x, y = x + 0.5 * span * ux, y + 0.5 * span * uy
     ax, ay = part.half_width * ux, part.half_width * uy
     return (x - ax, y - ay), (x + ax, y + ay)
-
-
-def describe_element(element: Element, index: int) -> str:
-    """Return how error messages name an element."""
-    return label(index, type(element).__name__.lower(), element.name)
 
 
 def _distance_from_element(

@@ -5,15 +5,12 @@ from typing import Any, NamedTuple
 
 import numba
 import numpy as np
-import numpy.typing as npt
 from numba.experimental import structref
 
 from bounce_env.engine.compile.jit import Record, function, kernel
-from bounce_env.engine.memory.records import record
+from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.memory.state import State
 from bounce_env.games.streams import EPISODES, STICKY_ACTIONS, bits, uniform
-
-Array = npt.NDArray[Any]
 
 EPISODE = record(
     world_seed="u8", episodes="i8",  # the world's stream of episodes and how many it has begun

@@ -9,7 +9,7 @@ from pydantic_core import InitErrorDetails
 
 from bounce_env.scene.base import union
 from bounce_env.scene.elements import Arc, Ball, Bumper, Element, Flipper, Paddle, Wall
-from bounce_env.scene.errors import Location, label
+from bounce_env.scene.errors import Location, describe_element
 from bounce_env.scene.fields import not_allowed, required
 from bounce_env.scene.regions import Field, Sensor, flat_corner
 from bounce_env.wording import at_least, at_most
@@ -47,10 +47,6 @@ def check_scene(ball: Ball | None, elements: Mapping[int, Element], max_speed: f
         raise ValidationError.from_exception_data("Scene", problems)
 
 
-def _label(index: int, element: Element) -> str:
-    return label(index, type(element).__name__.lower(), element.name)
-
-
 def _names(elements: Mapping[int, Element]) -> Iterator[InitErrorDetails]:
     first: dict[str, str] = {}
     for index, element in elements.items():
@@ -59,7 +55,7 @@ def _names(elements: Mapping[int, Element]) -> Iterator[InitErrorDetails]:
         if element.name in first:
             words = f"unique, but is also the name of {first[element.name]}"
             yield _not_allowed(words, element.name, "elements", index, "name")
-        first.setdefault(element.name, _label(index, element))
+        first.setdefault(element.name, describe_element(element, index))
 
 
 @dataclass(frozen=True)
@@ -157,7 +153,9 @@ def _speeds(ball: Ball | None, elements: Mapping[int, Element], max_speed: float
             words = f"a number > {at_least(fastest)}, because {why}, so that bounces may add speed without limit"
             yield InitErrorDetails(type=required(words, cause), loc=("max_speed",), input=None)
     elif max_speed <= fastest:
-        words = f"greater than {fastest}, the fastest that the surface of {_label(index, elements[index])} moves"
+        words = (
+            f"greater than {fastest}, the fastest that the surface of {describe_element(elements[index], index)} moves"
+        )
         yield _not_allowed(words, max_speed, "max_speed")
 
 
@@ -178,9 +176,9 @@ def _gain(ball: Ball | None, index: int, element: Element) -> tuple[str, Locatio
     if isinstance(element, Sensor | Field):
         return None
     if element.kick > 0.0:
-        return f"{_label(index, element)} has kick = {element.kick}", ("elements", index, "kick")
+        return f"{describe_element(element, index)} has kick = {element.kick}", ("elements", index, "kick")
     if ball is not None and ball.b * element.b > 1.0:
-        words = f"{_label(index, element)} has b = {element.b}, times ball.b = {ball.b} is more than 1"
+        words = f"{describe_element(element, index)} has b = {element.b}, times ball.b = {ball.b} is more than 1"
         return words, ("elements", index, "b") if element.b > 1.0 else ("ball", "b")
     return None
 

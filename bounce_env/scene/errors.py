@@ -44,6 +44,11 @@ def label(index: int, kind: str, name: object) -> str:
     return f"elements[{index}] ({kind} {name!r})" if name else f"elements[{index}] ({kind})"
 
 
+def describe_element(element: Any, index: int) -> str:
+    """Return how messages call an element of a scene, by its class."""
+    return label(index, type(element).__name__.lower(), element.name)
+
+
 def line_of(problem: Problem, source: str, labels: Mapping[int, str], literal: str | None = None) -> str:
     """Return a problem in words. labels: of elements, by index; literal: the value as it stands in a file."""
     match problem.at:

@@ -7,13 +7,14 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.placement import describe_element
 from bounce_env.scene import Scene, Sensor
+from bounce_env.scene.errors import describe_element
 from bounce_env.scenecheck.crossings import crossings
 from bounce_env.scenecheck.follow import CRUSHES, DRAINED, ENDLESS, LEFT, PLAYING, RATTLES, RESTS, STUCK
 from bounce_env.scenecheck.places import Cluster, clusters
 from bounce_env.scenecheck.reach import reach_boxes, scores
 from bounce_env.scenecheck.run import Survey, place_size
+from bounce_env.wording import counted
 
 KINDS = ("problem", "warning", "note")
 
@@ -46,7 +47,7 @@ def _crossings(scene: Scene) -> Iterator[Finding]:
             for first, second, (x, y) in found
         ]
         yield Finding(
-            "warning", f"standing elements run through each other: {_counted(len(found), 'pair')}", tuple(lines)
+            "warning", f"standing elements run through each other: {counted(len(found), 'pair')}", tuple(lines)
         )
 
 
@@ -62,11 +63,11 @@ def _untouched(survey: Survey) -> Iterator[Finding]:
     goals = [index for index, element in enumerate(survey.scene.elements) if scores(element)]
     never = [_name(survey.scene, index) for index in goals if survey.touched[index] == 0]
     if never:
-        yield Finding("problem", f"no ball of {_counted(len(survey.fates), 'ball')} touches what scores", tuple(never))
+        yield Finding("problem", f"no ball of {counted(len(survey.fates), 'ball')} touches what scores", tuple(never))
     if not _can_end(survey.scene):
         return
     shut = [
-        f"{_name(survey.scene, index)}: {_counted(int(survey.touched[index]), 'ball')}"
+        f"{_name(survey.scene, index)}: {counted(int(survey.touched[index]), 'ball')}"
         for index in goals
         if survey.touched[index] > 0 and survey.freely[index] == 0
     ]
@@ -83,7 +84,7 @@ def _endless(survey: Survey) -> Iterator[Finding]:
             f"a ball scores more than {survey.limit} times without coming within reach of a part that an agent moves"
         )
         lines = [f"{_how_often(survey, row)}, {_start(survey, row)}" for row in rows.tolist()]
-        yield Finding("problem", f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
+        yield Finding("problem", f"{title}: {counted(len(rows), 'ball')}", tuple(lines))
 
 
 def _how_often(survey: Survey, row: int) -> str:
@@ -95,7 +96,7 @@ def _lost(survey: Survey) -> Iterator[Finding]:
     """Return of a table with an inside: there all balls started."""
     rows = np.flatnonzero(survey.fates["end"] == LEFT).tolist()
     if survey.is_table and rows:
-        title = f"a ball leaves the scene and crosses no drain: {_counted(len(rows), 'ball')}"
+        title = f"a ball leaves the scene and crosses no drain: {counted(len(rows), 'ball')}"
         yield Finding("problem", title, tuple(_start(survey, row) for row in rows))
 
 
@@ -118,7 +119,7 @@ def _notes(survey: Survey) -> Iterator[Finding]:
     ):
         count = int(((ends == end) | ((ends == STUCK) & (end == PLAYING))).sum())
         if count:
-            yield Finding("note", f"{words}: {_counted(count, 'ball')} ({100 * count / balls:.4g} %)")
+            yield Finding("note", f"{words}: {counted(count, 'ball')} ({100 * count / balls:.4g} %)")
     where = " within reach of a part that an agent moves" if reach_boxes(survey.scene) else ""
     near = (ends == RESTS) & (_within_reach(survey) | (not where))
     for finding in _by_place(survey, near, f"a ball comes to rest{where}"):
@@ -132,10 +133,10 @@ def _by_place(survey: Survey, which: npt.NDArray[np.bool_], title: str) -> Itera
     places = np.column_stack([survey.fates["x"][rows], survey.fates["y"][rows]])
     groups = clusters(places, 2.0 * place_size(survey.scene) or 1.0)
     lines = (
-        f"{_where(group)}: {_counted(len(group.rows), 'ball')}, {_start(survey, rows[group.rows[0]])}"
+        f"{_where(group)}: {counted(len(group.rows), 'ball')}, {_start(survey, rows[group.rows[0]])}"
         for group in groups
     )
-    yield Finding("problem", f"{title}: {_counted(len(rows), 'ball')}", tuple(lines))
+    yield Finding("problem", f"{title}: {counted(len(rows), 'ball')}", tuple(lines))
 
 
 def _within_reach(survey: Survey) -> npt.NDArray[np.bool_]:
@@ -169,7 +170,3 @@ def _start(survey: Survey, row: int) -> str:
 
 def _name(scene: Scene, index: int) -> str:
     return describe_element(scene.elements[index], index)
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"

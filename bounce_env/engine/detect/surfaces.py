@@ -17,6 +17,8 @@ from bounce_env.engine.motion.flight import (
 from bounce_env.engine.motion.roots import falling_root
 from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
 
+Box = tuple[float, float, float, float]  # left, right, below, above [m]
+
 
 @function
 def face_line(face: Record) -> Line:
@@ -100,6 +102,24 @@ def _slides_past_circle(ball: Record, nx: float, ny: float, x: float, y: float, 
     return is_sliding(ball) and x * nx + y * ny >= offset_radius - ball.tolerance
 
 
+@function
+def _swept_box(flight: Flight, horizon: float) -> Box:
+    left, right = swept_interval(flight.x, flight.vx, flight.ax, horizon)
+    below, above = swept_interval(flight.y, flight.vy, flight.ay, horizon)
+    return left, right, below, above
+
+
+@function
+def _is_off_box(circle: Record, radius: float, box: Box) -> bool:
+    """Return whether a circle of this radius about (circle.x, circle.y) lies beside a box that a flight sweeps.
+
+    Written so that a box with infinite or undefined borders (an unbounded flight) rejects nothing.
+    """
+    left, right, below, above = box
+    beside = circle.x + radius < left or circle.x - radius > right
+    return beside or circle.y + radius < below or circle.y - radius > above
+
+
 @where("circles", otherwise=_no_standing_surface)
 def first_circle(
     state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float
@@ -110,18 +130,10 @@ def first_circle(
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
     best, index = horizon, -1
-    left, right = swept_interval(flight.x, flight.vx, flight.ax, horizon)
-    below, above = swept_interval(flight.y, flight.vy, flight.ay, horizon)
+    box = _swept_box(flight, horizon)
     for i in range(state.scenes[scene].circles):
         circle = state.circles[scene, i]
-        offset_radius = circle.offset_radius + ball.tolerance
-        # Written so that a box with infinite or undefined borders (an unbounded flight) rejects nothing.
-        if (
-            circle.x + offset_radius < left
-            or circle.x - offset_radius > right
-            or circle.y + offset_radius < below
-            or circle.y - offset_radius > above
-        ):
+        if _is_off_box(circle, circle.offset_radius + ball.tolerance, box):
             continue
         seen = flight_seen_from(flight, circle.x, circle.y)
         if is_off(state, w, circle.element) or _slides_past_circle(ball, nx, ny, seen.x, seen.y, circle.offset_radius):
@@ -137,19 +149,10 @@ def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float
     """Return the earliest hit of an arc before `horizon` [s]; as `first_face`."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
     best, index = horizon, -1
-    left, right = swept_interval(flight.x, flight.vx, flight.ax, horizon)
-    below, above = swept_interval(flight.y, flight.vy, flight.ay, horizon)
+    box = _swept_box(flight, horizon)
     for i in range(state.scenes[scene].arcs):
         arc = state.arcs[scene, i]
-        offset_radius = arc.outer + ball.tolerance
-        if (
-            arc.x + offset_radius < left
-            or arc.x - offset_radius > right
-            or arc.y + offset_radius < below
-            or arc.y - offset_radius > above
-        ):
-            continue
-        if is_off(state, w, arc.element):
+        if _is_off_box(arc, arc.outer + ball.tolerance, box) or is_off(state, w, arc.element):
             continue
         seen = flight_seen_from(flight, arc.x, arc.y)
         past = _slides_past_circle(ball, nx, ny, seen.x, seen.y, arc.outer)

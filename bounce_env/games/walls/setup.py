@@ -8,11 +8,12 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from bounce_env.engine.memory.records import Array, record
-from bounce_env.engine.placement import describe_element, element_gaps, part_cores_at_start
+from bounce_env.engine.placement import element_gaps, part_cores_at_start
 from bounce_env.games.episode import FPS
 from bounce_env.games.options import CONFIG, Balls, Gamma, Options, TimeLimit, options_class
 from bounce_env.games.timing import Pace, pace_of
 from bounce_env.scene import Arc, Element, Scene, Sensor, Wall
+from bounce_env.scene.errors import describe_element
 from bounce_env.scene.fields import one_of
 from bounce_env.wording import at_least, at_most
 

@@ -52,19 +52,12 @@ BRACKETING_STEPS = 100
 # directions of both.
 PRESSING = 2.0**-40
 
-# On a curved surface that a ball is pressed on there is no closed form for ever smaller bounces, nor for rolling. There
-# the smallest rebound is this share of sqrt(press / curvature), the speed at which the surface would let go of it.
+# On the round end of a part, and on another ball, there is no closed form for ever smaller bounces, nor for rolling.
+# There the smallest rebound is this share of sqrt(press / curvature), the speed at which it would let go.
 ROLLING = 0.01
 
-# In the hollow of a curve a ball that swings slower than this share of sqrt(press / curvature), or than `rest_speed`,
-# rests.
-SWING = 0.1 * ROLLING
-
-# The same for a ball balanced on top of a curve, from which it would roll off after tens of thousands of hops.
-BALANCE = 0.01 * ROLLING
-
 # A ball between several surfaces is taken to have come to rest when it rises no more than so many tolerances of length:
-# the smallest hop on a curve is 16 of them high.
+# the smallest hop on the round end of a part is 16 of them high.
 CORNER = 64.0
 
 # A ball that has bounced so many times in a row, each time after a way of no more than CORNER tolerances, is between

@@ -46,8 +46,8 @@ class World:
     scene: what the world is made of. balls: how many balls, 1 or more, all alike.
     Before the first `reset` there is no ball in play, and every other method raises RuntimeError.
 
-    A ball rolls on a curved surface, on a part that turns and on another ball in small hops; on walls and on parts that
-    stand or slide it rests and slides. Balls of no radius do not meet each other.
+    A ball rests and slides on walls, circles and arcs, and on the straight sides of parts that stand or slide; it rolls
+    in small hops on round ends of parts, on parts that turn and on another ball. Balls of no radius do not meet.
     """
 
     def __init__(self, scene: Scene, balls: int = 1) -> None:

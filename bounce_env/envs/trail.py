@@ -6,7 +6,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.memory.records import OUT
+from bounce_env.engine.compile.jit import from_python
+from bounce_env.engine.memory.records import ON_CURVE, OUT
+from bounce_env.engine.motion.curve_slide import CurveSlide, curve_slide_after
+
+_slide_after = from_python(curve_slide_after)
 
 SPACING = 1 / 60
 """Seconds between two points of a flight: closer than one can tell from the curve."""
@@ -16,7 +20,7 @@ SAME_PLACE = 1e-6
 
 
 class Flight(NamedTuple):
-    """Where and how fast a ball was at an instant [s], and how its velocity has changed since [m/s^2]."""
+    """Where and how fast a ball was at an instant [s], and how its velocity has changed since [m/s^2]; or its slide."""
 
     x: float
     y: float
@@ -25,19 +29,30 @@ class Flight(NamedTuple):
     ax: float
     ay: float
     begun: float
+    slide: CurveSlide | None = None
 
     @classmethod
-    def of(cls, ball: Any) -> "Flight":
-        """Return the present flight of a ball (a row of `State.balls`); a drained one stays where it is."""
+    def of(cls, ball: Any, slide: Any = None) -> "Flight":
+        """Return the present flight of a ball (a row of `State.balls`); a drained one stays where it is.
+
+        slide: its row of `State.curve_slides`, where the scene has any.
+        """
         b = dict(zip(ball.dtype.names, ball.item(), strict=True))
         begun = b["hi"] + b["lo"]
         if b["status"] == OUT:
             return cls(b["x"], b["y"], 0.0, 0.0, 0.0, 0.0, begun)
-        return cls(b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], begun)
+        on_curve = None
+        if b["contact"] == ON_CURVE:
+            row = dict(zip(slide.dtype.names, slide.item(), strict=True))
+            on_curve = CurveSlide(*(row[name] for name in CurveSlide._fields))
+        return cls(b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], begun, on_curve)
 
     def at(self, time: float) -> tuple[float, float]:
         """Return where the ball is at an instant."""
         t = time - self.begun
+        if self.slide is not None:
+            x, y, _, _ = _slide_after(self.slide, t)
+            return x, y
         return self.x + (self.vx + 0.5 * self.ax * t) * t, self.y + (self.vy + 0.5 * self.ay * t) * t
 
 

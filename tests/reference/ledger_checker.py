@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounce_env.scene import Scene
+from bounce_env.scene import Arc, Bumper, Scene, Wall
 from tests.reference.ledger_drive import Command
 from tests.reference.ledger_gaps import least_distances
 from tests.reference.ledger_pairs import PairChecks
@@ -51,6 +51,28 @@ def find_problems(scene: Scene, start: Start, ledger: Ledger, end: End, commands
     ledger: all rows from time 0 to `end.time`. commands: what was given meanwhile, see `ledger_drive.Command`.
     """
     return find_problems_of_all(scene, [start], ledger, [end], commands)
+
+
+def before_a_slide_on_a_curve(scene: Scene, ledger: Ledger, end: End) -> tuple[Ledger, End]:
+    """Return the run of one ball up to where a curve first holds it, or all of it.
+
+    This checker's paths are parabolas. Slides on curves are judged by themselves, see `test_slides`.
+    """
+    for i, row in enumerate(ledger):
+        if row["kind"] != CONTACT_BEGINS:
+            continue
+        element = scene.elements[row["element"]]
+        at_end = False
+        if isinstance(element, Wall) and scene.ball.radius > 0.0:  # its round ends are curves
+            (x0, y0), (x1, y1) = element.start, element.end
+            share = ((row["x"] - x0) * (x1 - x0) + (row["y"] - y0) * (y1 - y0)) / ((x1 - x0) ** 2 + (y1 - y0) ** 2)
+            at_end = not 1e-12 < share < 1.0 - 1e-12
+        if isinstance(element, Arc | Bumper) or at_end:
+            place, speed = (float(row["x"]), float(row["y"])), (float(row["vx0"]), float(row["vy0"]))
+            if i > 0 and ledger[i - 1]["time"] == row["time"]:  # a hop shorter than the clock can tell has no row
+                speed = (float(ledger[i - 1]["vx1"]), float(ledger[i - 1]["vy1"]))
+            return ledger[:i], End(float(row["time"]), place, speed, 0)
+    return ledger, end
 
 
 def find_problems_of_all(

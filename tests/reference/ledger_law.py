@@ -87,6 +87,9 @@ def _without_kick(s: Surface, rules: Rules, closing: float, along: float, near: 
     if press < -scale:
         return
     press = max(press, 0.0)
+    if s.curvature != 0.0 and s.least == 0.0:
+        yield from _off_standing_curve(s, rules, closing, along, near, press <= scale)
+        return
     absorbed = rules.rest_speed
     if s.curvature != 0.0 and rules.rest_speed > 0.0:
         absorbed = max(absorbed, 1.5 * rolling_speed(s, rules, along, press))
@@ -99,6 +102,17 @@ def _without_kick(s: Surface, rules: Rules, closing: float, along: float, near: 
     else:
         for away in _off_curve(s, rules, closing, along, near, press):
             yield away, s.f * along
+
+
+def _off_standing_curve(
+    s: Surface, rules: Rules, closing: float, along: float, near: float, loose: bool
+) -> Iterator[tuple[float, float]]:
+    """A circle or arc that stands: the law, but where gravity presses. `loose`: nothing may press the ball."""
+    by_gravity, scale = -(s.ax * s.nx + s.ay * s.ny), CLOSE * math.hypot(s.ax, s.ay)
+    if by_gravity > -scale and closing <= rules.rest_speed + near:
+        yield 0.0, along if s.f > 0.0 else 0.0
+    if by_gravity <= scale or closing >= rules.rest_speed - near or loose:
+        yield s.b * closing, s.f * along
 
 
 def least_rebound(rest_speed: float, pull: float, spin: float, size: float) -> float:

@@ -98,7 +98,7 @@ HOLLOWS = [
         ),
         position=(1 / 128, math.sqrt(0.0525) + 0.03125),  # of two ends closed on alike, the one that is first is struck
         script=(60.0,),
-        rows="(cup bounce, )+cup begin(, cup begin)?",
+        rows="(cup (bounce|begin|end), )+cup begin",
         expect=resting(0.0, math.sqrt(0.0525), NEAR + CORNER / 0.4),
     ),
     Case(

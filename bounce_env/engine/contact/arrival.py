@@ -6,8 +6,8 @@ from bounce_env.engine.compile.jit import function, where
 from bounce_env.engine.memory.lookup import side_of_part
 from bounce_env.engine.memory.records import NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import flight_of, flight_path_bound, flight_rounding, fly_ball
 from bounce_env.engine.motion.parts import moving_part, nearest_on_core, part_core_at
+from bounce_env.engine.motion.path import acceleration_in, motion_after, path_length_bound
 from bounce_env.engine.tolerances import CORNER, ROOM_TO_MEET, SEARCH_ENDS, ULPS_OF_LENGTH
 
 
@@ -15,15 +15,17 @@ from bounce_env.engine.tolerances import CORNER, ROOM_TO_MEET, SEARCH_ENDS, ULPS
 def end_flight(state: State, w: int, k: int, t: float, hi: float, lo: float) -> None:
     """Move the ball along its flight by `t` seconds, to the instant (hi, lo), and set what counts as touching there."""
     ball, extent = state.balls[w, k], state.scenes[state.worlds[w].scene].extent
-    flight = flight_of(state, ball)
-    ball.tolerance = flight_rounding(flight, extent, t)
-    way = flight_path_bound(flight, t)
+    way = path_length_bound(state, w, k, t)
+    ball.tolerance = ULPS_OF_LENGTH * (extent + way)
     if way > CORNER * ULPS_OF_LENGTH * extent:
         ball.confined = 0
     ball.strayed += way
     if ball.strayed > ROOM_TO_MEET * extent:
         ball.strayed, ball.legs = 0.0, ball.legs + 1
-    fly_ball(ball, flight, t, hi, lo)
+    motion = motion_after(state, w, k, t)
+    ball.ax, ball.ay = acceleration_in(state, w, k, motion)
+    ball.x, ball.y, ball.vx, ball.vy = motion
+    ball.hi, ball.lo = hi, lo
     if t > 0.0:  # in no time nothing is rounded, and a push may wait to be resolved
         _keep_along_face(state, w, k)
 

@@ -127,8 +127,6 @@ def _bounce_from(state: State, w: int, k: int, i: int, closing: float, noise: fl
         rebound += material.kick
     else:
         kicked = False
-    if ball.rolling != touch.element:
-        ball.rolling = -1
     vx0, vy0 = ball.vx, ball.vy
     vx, vy = bounce(vx0, vy0, touch.nx, touch.ny, touch.ux, touch.uy, rebound, f)
     if abs(vx) + abs(vy) <= noise:
@@ -144,23 +142,32 @@ def _bounce_from(state: State, w: int, k: int, i: int, closing: float, noise: fl
 def _softened_bounce(
     ball: Record, touch: Record, head: Record, material: Record, closing: float, rebound: float, f: float
 ) -> tuple[float, float]:
-    """Rebound [m/s] and friction where the ball is pressed on the surface: absorbed, or on a curve the smallest one."""
+    """Rebound [m/s] and friction where the ball is pressed on the surface: absorbed, or on a wall too little to see."""
     press = normal_load(ball, touch)
     if press == 0.0:
         return rebound, f
-    rolling = touch.curvature != 0.0 and closing <= 1.5 * rolling_speed(ball, touch, press, head.extent)
-    if closing < head.rest_speed or (rolling and head.rest_speed > 0.0):
+    pressed_by_gravity = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
+    if pressed_by_gravity and closing < head.rest_speed:
         return 0.0, (1.0 if f > 0.0 else 0.0)
-    if touch.curvature == 0.0 and material.b == 1.0 and is_soft(closing, press, head.extent):
+    if touch.curvature == 0.0:
         # Hops that lose nothing have no end, and these show in no place of the ball: it slides.
-        return 0.0, f
-    # Where nothing is lost bounces do not die away: only of a ball that rolls are they the smallest there are.
-    lossless = material.b >= 1.0 and ball.rolling != touch.element
-    if touch.curvature == 0.0 or lossless:
-        return rebound, f
+        ends = material.b == 1.0 and is_soft(closing, press, head.extent)
+        return (0.0 if ends else rebound), f
+    if touch.part >= 0:
+        return _rolling_bounce(ball, touch, head, material, press, closing, rebound, f)
+    return rebound, f
+
+
+@function
+def _rolling_bounce(
+    ball: Record, touch: Record, head: Record, material: Record, press: float, closing: float, rebound: float, f: float
+) -> tuple[float, float]:
+    """Rebound [m/s] and friction on the round end of a part, on which the ball rolls in small hops."""
     smallest = rolling_speed(ball, touch, press, head.extent)
+    if closing <= 1.5 * smallest and head.rest_speed > 0.0:
+        return 0.0, (1.0 if f > 0.0 else 0.0)
     holds = f == 0.0 or (f < 1.0 and head.rest_speed == 0.0)
-    if rebound >= smallest or (rebound == 0.0 and holds):
+    if material.b >= 1.0 or rebound >= smallest or (rebound == 0.0 and holds):
         return rebound, f
     if is_soft(closing, press, head.extent):
         return 0.0, f

@@ -14,7 +14,7 @@ from bounce_env.engine.memory.records import BOUNCE, CRUSHED
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of
 from bounce_env.engine.motion.instant import since
-from bounce_env.engine.tolerances import PRESSING, ROLLING, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import PRESSING, ROLLING, SEARCH_ENDS, ULPS_OF_SPEED
 
 
 @where("pairs", inline=False)
@@ -30,6 +30,11 @@ def collide(state: State, w: int, k: int, j: int, hi: float, lo: float, ledger: 
     end_flight(state, w, j, since(hi, lo, other.hi, other.lo), hi, lo)
     dx, dy = one.x - other.x, one.y - other.y
     distance = math.sqrt(dx * dx + dy * dy)
+    if distance > (2.0 + SEARCH_ENDS) * head.ball_radius:  # the search ended before a hit
+        for ball in (one, other):
+            if ball.status != CRUSHED:
+                schedule_resolve(ball)
+        return
     nx, ny = dx / distance, dy / distance
     apart = 0.5 * (2.0 * head.ball_radius - distance)
     one.x, one.y = one.x + apart * nx, one.y + apart * ny

@@ -20,16 +20,16 @@ def hop_on(state: State, w: int, k: int, at_once: bool, bounces: int, ledger: Ta
 
     bounces: how many there had been when the ball came here, at once or not.
     """
-    if state.gravity is not None or state.arcs is not None:
+    if state.gravity is not None:
         _roll(state, w, k, ledger)
     # Where something closes on it, a ball without room is bounced from a corner at once, for ever.
     if at_once and (state.worlds[w].bounces == bounces or state.balls[w, k].confined > BOUNCES_BEFORE_STANDING):
         _leave_part(state, w, k, ledger)
 
 
-@function
+@where("parts")
 def _roll(state: State, w: int, k: int, ledger: Table) -> None:
-    """Let a ball that flies along a curve which it is pressed on leave it with the smallest rebound: one small hop.
+    """Let a ball that flies along the round end of a part, pressed on it, leave it with the smallest rebound.
 
     What else it touches was not closed on without the hop: where it would be now, the ball leaves along that.
     """
@@ -38,14 +38,13 @@ def _roll(state: State, w: int, k: int, ledger: Table) -> None:
     for i in range(ball.touched):
         touch = state.touches[w, i]
         leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
-        if touch.curvature != 0.0 and not leaving and normal_load(ball, touch) > best:
+        if touch.curvature != 0.0 and touch.part >= 0 and not leaving and normal_load(ball, touch) > best:
             best, index = normal_load(ball, touch), i
     if index < 0:
         return
     touch = state.touches[w, index]
     extent = state.scenes[state.worlds[w].scene].extent
     hop = rolling_speed(ball, touch, best, extent) + closing_speed(ball, touch)
-    ball.rolling = touch.element
     vx0, vy0 = ball.vx, ball.vy
     push_off(ball, touch, hop)
     count_bounce(state, w, k, touch, vx0, vy0, ledger)

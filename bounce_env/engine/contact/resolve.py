@@ -10,7 +10,16 @@ from bounce_env.engine.compile.jit import Record, Table, function
 from bounce_env.engine.contact.bounces import bounce_from_all, count_bounce, surface_of, take_soft, take_vague
 from bounce_env.engine.contact.hops import hop_on
 from bounce_env.engine.contact.resting import bear, find_contact, is_slow
-from bounce_env.engine.contact.restitution import closing_speed, is_soft, normal_load, surface_speed
+from bounce_env.engine.contact.restitution import (
+    along_speed,
+    closing_speed,
+    is_soft,
+    is_standing_curve,
+    normal_load,
+    push_off,
+    slow_speed,
+    surface_speed,
+)
 from bounce_env.engine.contact.sides import update_crossing_sides
 from bounce_env.engine.contact.touching import collect_touches, keep_outside_touched
 from bounce_env.engine.detect.pairs import plan_pairs
@@ -132,12 +141,16 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
     if ball.status == CRUSHED:
         return -1.0
     _resolve_release(ball)
-    if state.gravity is not None:
+    if state.gravity is not None or state.arcs is not None:
         # Told at once of a hit of something that it does not close on, a ball that rides on a part, or slides into one,
         # would be so for ever: it hops off.
         slides_in = contact >= 0 and ball.next_kind == NEXT_PART
         again = (contact == RIDING or slides_in) and at_once and state.worlds[w].bounces == bounces
+        vx, vy = ball.vx, ball.vy
+        _end_hops_on_curves(state, w, k)
         i = _resolve_contact(state, w, k, contact, support, again, vx0, vy0, ledger)
+        if i < 0 and ball.contact == FLYING:
+            ball.vx, ball.vy = vx, vy
         corner = corner if i < 0 else -1
     if corner >= 0:
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
@@ -158,6 +171,25 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
 
 
 @function
+def _end_hops_on_curves(state: State, w: int, k: int) -> None:
+    """Take from the velocity of a ball what leaves a curve that presses it in hops which rise above no tolerance.
+
+    Where friction acts on each of them they go on until they are no way along the curve, either.
+    """
+    ball, scene = state.balls[w, k], state.worlds[w].scene
+    head = state.scenes[scene]
+    for i in range(ball.touched):
+        touch = state.touches[w, i]
+        material, leaving, press = state.elements[scene, touch.element], -closing_speed(ball, touch), 0.0
+        if is_standing_curve(touch) and leaving > slow_speed(ball, touch):
+            press = normal_load(ball, touch)
+        if press > 0.0 and is_soft(leaving, press, head.extent):
+            way = abs(along_speed(ball, touch)) * 2.0 * leaving / press
+            if material.f == 1.0 or head.rest_speed > 0.0 or way <= (1.0 - material.b * material.f) * ball.tolerance:
+                push_off(ball, touch, -leaving)
+
+
+@function
 def _resolve_contact(
     state: State, w: int, k: int, contact: int, support: int, off: bool, vx: float, vy: float,
     ledger: Table,
@@ -169,7 +201,8 @@ def _resolve_contact(
     ball = state.balls[w, k]
     i = -1 if off else find_contact(state, w, k)
     stopped = ball.contact == HELD and (vx != ball.vx or vy != ball.vy)  # held again, after a push
-    if ball.contact == contact and ball.support == support and not stopped:
+    let_go = i >= 0 and ball.contact == FLYING  # friction has taken all that pressed it
+    if ball.contact == contact and ball.support == support and not (stopped or let_go):
         return -1
     if support >= 0:
         _log_end(state, w, k, support, vx, vy, ledger)
@@ -177,6 +210,8 @@ def _resolve_contact(
         touch = state.touches[w, i]
         ball.nx, ball.ny = touch.nx, touch.ny
         append_contact(ledger, state.worlds[w], ball, k, CONTACT_BEGINS, surface_of(touch), vx, vy)
+        if let_go:
+            _log_end(state, w, k, touch.element, ball.vx, ball.vy, ledger)
     return i
 
 

@@ -1,16 +1,26 @@
 """What bears a ball after its bounces at one instant: a surface on which it rests, or slides.
 
 A contact is a constraint, not a series of tiny bounces. On a wall, and on a part in its frame, the ball slides in
-closed form under the tangential part of its acceleration; on curves it may rest.
+closed form under the tangential part of its acceleration; on a circle or arc that stands, like a pendulum.
 """
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function
-from bounce_env.engine.contact.restitution import along_speed, closing_speed, is_standing, normal_load, slow_speed
-from bounce_env.engine.memory.records import HELD, RIDING
+from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.contact.restitution import (
+    along_speed,
+    closing_speed,
+    gap_trend,
+    is_standing,
+    is_standing_curve,
+    load_noise,
+    normal_load,
+    slow_speed,
+)
+from bounce_env.engine.memory.records import HELD, ON_CURVE, RIDING
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.tolerances import ALIGNED, BALANCE, CORNER, PRESSING, SWING, ULPS_OF_LENGTH, ULPS_OF_SPEED
+from bounce_env.engine.motion.curve_slide import new_curve_slide
+from bounce_env.engine.tolerances import ALIGNED, CORNER, PRESSING, ULPS_OF_LENGTH, ULPS_OF_SPEED
 
 
 @function
@@ -30,40 +40,60 @@ def find_contact(state: State, w: int, k: int) -> int:
     head = state.scenes[scene]
     for i in range(ball.touched):
         touch = state.touches[w, i]
-        if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or normal_load(ball, touch) == 0.0:
+        if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or not _is_pressed(ball, touch):
             continue
         if not _lets_hold(ball, state.touches, w, i):
             continue
         f = state.elements[scene, touch.element].f
         if f == 0.0 or (f < 1.0 and head.rest_speed == 0.0):
+            return _stop_by_friction(ball, touch, i)
+        if _is_balanced_on_curve(ball, touch):
             return _hold(ball, touch, i)
-        if _swings_out(ball, touch, head.rest_speed):
-            return _hold(ball, touch, i)
-    if ball.gx == 0.0 and ball.gy == 0.0:
-        return -1
-    if is_slow(ball, head.extent):
+    if (ball.gx != 0.0 or ball.gy != 0.0) and is_slow(ball, head.extent):
         i = _carrier(ball, state.touches, w)
         if i >= 0:
             return _hold(ball, state.touches[w, i], i)
     for i in range(ball.touched):
-        if _slides_on(ball, state.touches, w, i):
+        if _slides_on(state, w, k, i):
             return i
     return -1
 
 
 @function
-def _swings_out(ball: Record, touch: Record, rest_speed: float) -> bool:
-    """Whether a ball in the hollow of a curve, or on top of one, moves so little to and fro that it is taken to rest.
+def _is_pressed(ball: Record, touch: Record) -> bool:
+    """Return whether a touched surface, that the ball does not leave, is to hold it back."""
+    return gap_trend(ball, touch) < 0 if is_standing_curve(touch) else normal_load(ball, touch) > 0.0
 
-    Told by the speed at which it comes, or came, through the point where the normal alone carries it.
+
+@function
+def _stop_by_friction(ball: Record, touch: Record, i: int) -> int:
+    """Hold a ball that friction stops on a surface, or let it fly where that lets go of it; return which.
+
+    Under a ceiling that curves only its speed presses a ball: friction takes of that what it can, or all where the
+    ball moves on to where it would be pressed again.
     """
-    if touch.curvature == 0.0 or ball.gx * touch.nx + ball.gy * touch.ny >= 0.0:
+    off = ball.gx * touch.nx + ball.gy * touch.ny
+    if not (is_standing_curve(touch) and off > load_noise(ball, touch)):
+        return _hold(ball, touch, i)
+    speed = math.copysign(math.sqrt(off / -touch.curvature), along_speed(ball, touch))
+    ball.vx, ball.vy = -speed * touch.ny, speed * touch.nx
+    if gap_trend(ball, touch) < 0:
+        ball.vx, ball.vy = 0.0, 0.0
+    return i
+
+
+@function
+def _is_balanced_on_curve(ball: Record, touch: Record) -> bool:
+    """Return whether a ball is at rest in the lowest point of a hollow, or on the highest of a curve.
+
+    As far as it swings to and fro, or is off that point, by no more than the tolerance of lengths.
+    """
+    pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
+    if not is_standing_curve(touch) or pull == 0.0:
         return False
     along, across = along_speed(ball, touch), ball.gx * touch.ny - ball.gy * touch.nx
-    pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
-    speed = math.sqrt(along * along + across * across / (abs(touch.curvature) * pull))
-    natural = math.sqrt(pull / abs(touch.curvature))
-    return speed <= (max(rest_speed, SWING * natural) if touch.curvature < 0.0 else BALANCE * natural)
+    way = across / pull * touch.radius
+    return along * along * touch.radius / pull + way * way <= ball.tolerance * ball.tolerance
 
 
 @function
@@ -89,7 +119,7 @@ def _hold(ball: Record, touch: Record, i: int) -> int:
 def _carrier(ball: Record, touches: Table, w: int) -> int:
     """Which touched surface holds a ball of next to no speed, alone or with another one; -1 if they do not hold it."""
     for i in range(ball.touched):
-        if _carries_alone(ball, touches[w, i]):
+        if not is_standing_curve(touches[w, i]) and _carries_alone(ball, touches[w, i]):
             return i
     for i in range(ball.touched):
         for j in range(i):
@@ -120,38 +150,88 @@ def _shares(ball: Record, one: Record, other: Record) -> tuple[float, float]:
 
 
 @function
-def _slides_on(ball: Record, touches: Table, w: int, i: int) -> bool:
-    """Let the ball slide along what it touches, if that is straight, the ball is pressed on it and stays beside it.
+def _slides_on(state: State, w: int, k: int, i: int) -> bool:
+    """Let the ball slide along what it touches, if that presses it and the ball stays beside it.
 
-    On a part that slides itself it does so in the part's frame.
+    On a part that slides itself it does so in the part's frame, on a curve only if that stands.
     """
-    touch = touches[w, i]
-    slow = slow_speed(ball, touch)
-    # However little it is pressed: what is not constrained would sink in by and by.
-    pressed = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
-    if touch.curvature != 0.0 or touch.moves or closing_speed(ball, touch) < -slow or not pressed:
+    ball, touch = state.balls[w, k], state.touches[w, i]
+    slow, curved = slow_speed(ball, touch), is_standing_curve(touch)
+    if touch.moves or closing_speed(ball, touch) < -slow or (touch.curvature != 0.0 and not curved):
+        return False
+    # However little a wall presses it: what is not constrained would sink in by and by.
+    if not (gap_trend(ball, touch) < 0 if curved else ball.gx * touch.nx + ball.gy * touch.ny < 0.0):
         return False
     ux, uy = touch.ny, -touch.nx
     rate = (ball.vx - touch.ux) * ux + (ball.vy - touch.uy) * uy
     pull = ball.gx * ux + ball.gy * uy
-    noise = PRESSING * (abs(ball.gx) + abs(ball.gy))
-    lean = rate if abs(rate) > slow else (pull if abs(pull) > noise else 0.0)
-    if (touch.along >= touch.length - ball.tolerance and lean > 0.0) or (touch.along <= ball.tolerance and lean < 0.0):
+    if _runs_off_end(ball, touch):
         return False
-    ax, ay = pull * ux, pull * uy
+    turn = touch.curvature * rate * rate
+    ax, ay = pull * ux - turn * touch.nx, pull * uy - turn * touch.ny
     for j in range(ball.touched):
-        other = touches[w, j]
-        if closing_speed(ball, other) >= -slow_speed(ball, other) and ax * other.nx + ay * other.ny < -noise:
+        if j != i and not _opens_beside(ball, touch, state.touches[w, j], ax, ay):
             return False
     bear(ball, touch)
     ball.vx, ball.vy, ball.ax, ball.ay = touch.ux + rate * ux, touch.uy + rate * uy, ax, ay
-    if abs(ball.vx) + abs(ball.vy) <= slow:
+    if curved:
+        begin_curve_slide(state, w, k, touch, -rate)
+    elif abs(ball.vx) + abs(ball.vy) <= slow:
         ball.vx, ball.vy = 0.0, 0.0  # it stands while the part slides by: the rest is rounding
     return True
 
 
 @function
+def _runs_off_end(ball: Record, touch: Record) -> bool:
+    """Return whether a ball at the end of a surface moves off it."""
+    if touch.along < touch.length - ball.tolerance and touch.along > ball.tolerance:
+        return False
+    rate, pull = -along_speed(ball, touch), ball.gx * touch.ny - ball.gy * touch.nx
+    lean = rate if abs(rate) > slow_speed(ball, touch) else 0.0
+    if lean == 0.0 and abs(pull) > PRESSING * (abs(ball.gx) + abs(ball.gy)):
+        lean = pull
+    return (touch.along >= touch.length - ball.tolerance and lean > 0.0) or (
+        touch.along <= ball.tolerance and lean < 0.0
+    )
+
+
+@function
+def _opens_beside(ball: Record, touch: Record, other: Record, ax: float, ay: float) -> bool:
+    """Return whether the gap to another surface does not close while the ball slides, at (ax, ay), on one."""
+    if closing_speed(ball, other) < -slow_speed(ball, other) or _runs_off_end(ball, other):
+        return True
+    along = along_speed(ball, other)
+    noise = PRESSING * (abs(ball.gx) + abs(ball.gy)) + load_noise(ball, touch) + load_noise(ball, other)
+    return ax * other.nx + ay * other.ny + other.curvature * along * along >= -noise
+
+
+@where("curve_slides", inline=False)
+def begin_curve_slide(state: State, w: int, k: int, touch: Record, speed: float) -> None:
+    """Let a ball slide on a curve that it touches at `speed` [m/s] along it, counter-clockwise about it positive."""
+    ball, slide = state.balls[w, k], state.curve_slides[w, k]
+    facing = 1.0 if touch.curvature > 0.0 else -1.0
+    nx, ny = facing * touch.nx, facing * touch.ny
+    ball.x, ball.y = touch.cx + touch.radius * nx, touch.cy + touch.radius * ny
+    motion = new_curve_slide(touch.cx, touch.cy, touch.radius, nx, ny, facing * speed, ball.gx, ball.gy)
+    slide.x, slide.y, slide.radius, slide.down_x, slide.down_y = (
+        touch.cx,
+        touch.cy,
+        touch.radius,
+        motion.down_x,
+        motion.down_y,
+    )
+    slide.sense, slide.swings, slide.complement = motion.sense, int(motion.swings), motion.complement
+    slide.lowest_speed = motion.lowest_speed
+    slide.rate, slide.phase, slide.facing, slide.arc = motion.rate, motion.phase, facing, touch.arc
+
+
+@function
 def bear(ball: Record, touch: Record) -> None:
-    """Let a ball be in contact with what it touches: with a straight side of it that it slides along."""
-    ball.contact = touch.face if touch.part < 0 else RIDING
+    """Let a ball be in contact with what it touches: with a straight side or a curve that it slides along."""
+    if touch.part >= 0:
+        ball.contact = RIDING
+    elif touch.curvature != 0.0:
+        ball.contact = ON_CURVE
+    else:
+        ball.contact = touch.face
     ball.rides, ball.support = touch.part, touch.element

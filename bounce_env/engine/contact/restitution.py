@@ -7,7 +7,7 @@ tutorial's reflection in the frame of the surface (docs/physics.md, "Bounce law"
 import math
 
 from bounce_env.engine.compile.jit import Record, function
-from bounce_env.engine.tolerances import PRESSING, ROLLING, ULPS_OF_LENGTH, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import PRESSING, ROLLING, ULP, ULPS_OF_LENGTH, ULPS_OF_SPEED
 
 
 @function
@@ -81,16 +81,59 @@ def is_standing(touch: Record) -> bool:
 
 
 @function
+def is_standing_curve(touch: Record) -> bool:
+    """Return whether a touched surface is a circle or arc that belongs to no part."""
+    return touch.curvature != 0.0 and touch.part < 0
+
+
+@function
 def normal_load(ball: Record, touch: Record) -> float:
     """Return the acceleration [m/s^2] that presses the ball on a surface that it moves along; 0 where it does not.
 
     Gravity's share, and on a curve what it takes to follow it.
     """
+    press = -gap_acceleration(ball, touch)
+    return press if press > load_noise(ball, touch) else 0.0
+
+
+@function
+def gap_acceleration(ball: Record, touch: Record) -> float:
+    """Return the second derivative [m/s^2] of the gap to a touched surface, if only gravity and fields acted."""
     along = along_speed(ball, touch)
+    return ball.gx * touch.nx + ball.gy * touch.ny + touch.curvature * along * along
+
+
+@function
+def load_noise(ball: Record, touch: Record) -> float:
+    """Return what of a gap's second derivative [m/s^2] is rounding."""
+    pull, along = abs(ball.gx) + abs(ball.gy), along_speed(ball, touch)
+    if touch.curvature == 0.0:
+        return PRESSING * pull
+    bend = abs(touch.curvature)
+    return pull * (ball.tolerance * bend + 4.0 * ULP) + 8.0 * ULP * bend * along * along
+
+
+@function
+def gap_trend(ball: Record, touch: Record) -> int:
+    """Return 1 where the gap to a touched surface opens, -1 where it closes, 0 where it stays: ball and surface go on.
+
+    The first derivative of the gap that is not zero decides (docs/physics.md, "Leave, hit or stay"); zero is what is
+    below its rounding.
+    """
+    rate, slow = -closing_speed(ball, touch), slow_speed(ball, touch)
+    if abs(rate) > slow:
+        return 1 if rate > 0.0 else -1
+    second = gap_acceleration(ball, touch)
+    if abs(second) > load_noise(ball, touch):
+        return 1 if second > 0.0 else -1
+    along, pull = along_speed(ball, touch), ball.gy * touch.nx - ball.gx * touch.ny
+    third = 3.0 * touch.curvature * along * pull
+    relative = ball.tolerance * abs(touch.curvature) + 8.0 * ULP
+    if abs(third) > 3.0 * abs(touch.curvature * along) * (abs(ball.gx) + abs(ball.gy)) * relative:
+        return 1 if third > 0.0 else -1
     turn = touch.curvature * along * along
-    press = -(ball.gx * touch.nx + ball.gy * touch.ny) - turn
-    noise = PRESSING * (abs(ball.gx) + abs(ball.gy) + abs(turn))
-    return press if press > noise else 0.0
+    fourth = touch.curvature * (pull * pull + turn * turn)
+    return 1 if fourth > 0.0 else (-1 if fourth < 0.0 else 0)
 
 
 @function
@@ -107,10 +150,10 @@ def soft_speed(press: float, extent: float) -> float:
 
 @function
 def rolling_speed(ball: Record, touch: Record, press: float, extent: float) -> float:
-    """Return the speed [m/s] of the small hops in which a ball rolls on a curved surface that it is pressed on.
+    """Return the speed [m/s] of the small hops in which a ball rolls on the round end of a part.
 
-    A share of the speed at which it would let go of the curve; for a slow ball less, so that one in a hollow between
-    several surfaces comes down to rest.
+    A share of the speed at which it would let go of it; for a slow ball less, so that one between several surfaces
+    comes down to rest.
     """
     return min(
         ROLLING * math.sqrt(press / abs(touch.curvature)),

@@ -10,7 +10,7 @@ from bounce_env.engine.detect.surfaces import face_line, surface_normal
 from bounce_env.engine.impact.grazing import bending
 from bounce_env.engine.impact.line import leaves_line_end
 from bounce_env.engine.memory.lookup import is_off
-from bounce_env.engine.memory.records import CLOSED, NEXT_PART, OFF_END
+from bounce_env.engine.memory.records import CLOSED, NEXT_HIT, NEXT_PART, OFF_END, ON_CURVE, ON_JOINT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.dragged_wall import height_over_dragged_wall
 from bounce_env.engine.motion.flight import Flight, coordinate_after, flight_seen_from, speed_after
@@ -33,7 +33,8 @@ def update_sides(state: State, w: int, k: int, start: Flight, t: float) -> None:
     if left >= 0:
         turn = _turn_about_end(state, w, k, left, nx, ny)
         _turn_to_faces(state, w, k, left, turn)
-        _turn_to_arcs(state, w, k, turn)
+        _turn_to_arcs(state, w, k, -1, turn)
+    _update_at_joint(state, w, k)
 
 
 @function
@@ -151,11 +152,28 @@ def _turn_to_faces(state: State, w: int, k: int, left: int, turn: float) -> None
 
 
 @where("arc_sides")
-def _turn_to_arcs(state: State, w: int, k: int, turn: float) -> None:
+def _update_at_joint(state: State, w: int, k: int) -> None:
+    """Set a point's sides of what begins or ends where it comes to along a wall or an arc, by the side it is on."""
+    ball = state.balls[w, k]
+    if ball.next_kind != NEXT_HIT or ball.hit_kind != ON_JOINT:
+        return
+    nx, ny = surface_normal(state, w, k, ball.hit_index)
+    arc = -1
+    if ball.contact == ON_CURVE:
+        slide = state.curve_slides[w, k]
+        nx, ny, arc = slide.facing * (ball.x - slide.x), slide.facing * (ball.y - slide.y), slide.arc
+    # From where it came round through its own side, see `_turn_about_end`.
+    turn = 1.0 if ball.vy * nx - ball.vx * ny > 0.0 else -1.0
+    _turn_to_faces(state, w, k, ball.hit_index, turn)
+    _turn_to_arcs(state, w, k, arc, turn)
+
+
+@where("arc_sides")
+def _turn_to_arcs(state: State, w: int, k: int, left: int, turn: float) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for i in range(state.scenes[scene].arcs):
         arc = state.arcs[scene, i]
-        if arc.span == CLOSED:
+        if i == left or arc.span == CLOSED:
             continue
         dx, dy = ball.x - arc.x, ball.y - arc.y
         if abs(dx - arc.sx * arc.outer) + abs(dy - arc.sy * arc.outer) <= 2.0 * ball.tolerance:

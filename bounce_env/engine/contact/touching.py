@@ -11,6 +11,7 @@ from bounce_env.engine.detect.surfaces import face_line
 from bounce_env.engine.impact.arc import is_in_arc_span
 from bounce_env.engine.impact.line import is_beside_line
 from bounce_env.engine.memory.lookup import is_off, is_one_way, side_of_part, side_on
+from bounce_env.engine.memory.records import CLOSED
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import (
     Core,
@@ -60,14 +61,8 @@ def _add_touch(
         return False
     touch = state.touches[w, ball.touched]
     touch.nx, touch.ny, touch.ux, touch.uy = nx, ny, 0.0, 0.0
-    touch.gap, touch.curvature, touch.element, touch.face, touch.part, touch.moves = (
-        gap,
-        curvature,
-        element,
-        face,
-        -1,
-        0,
-    )
+    touch.gap, touch.curvature, touch.element, touch.face = gap, curvature, element, face
+    touch.part, touch.moves, touch.arc = -1, 0, -1
     ball.touched += 1
     return True
 
@@ -109,7 +104,10 @@ def _touch_circles(state: State, w: int, k: int) -> None:
             continue
         distance = math.sqrt(square)
         gap = distance - circle.offset_radius
-        _add_touch(state, w, k, dx / distance, dy / distance, gap, 1.0 / circle.offset_radius, circle.element, -1)
+        if _add_touch(state, w, k, dx / distance, dy / distance, gap, 1.0 / circle.offset_radius, circle.element, -1):
+            touch = state.touches[w, ball.touched - 1]
+            touch.cx, touch.cy, touch.radius = circle.x, circle.y, circle.offset_radius
+            touch.along, touch.length = touch.radius, 2.0 * touch.radius  # it has no ends
 
 
 @where("arcs")
@@ -130,7 +128,21 @@ def _touch_arcs(state: State, w: int, k: int) -> None:
         curvature = 1.0 / arc.outer if outside else -1.0 / arc.inner
         nx, ny = facing * (dx / distance), facing * (dy / distance)
         gap = distance - arc.outer if outside else arc.inner - distance
-        _add_touch(state, w, k, nx, ny, gap, curvature, arc.element, -1)
+        if _add_touch(state, w, k, nx, ny, gap, curvature, arc.element, -1):
+            _tell_arc(state.touches[w, ball.touched - 1], arc, i, outside, dx, dy)
+
+
+@function
+def _tell_arc(touch: Record, arc: Record, i: int, outside: bool, dx: float, dy: float) -> None:
+    """Note the path along arc `i`, and how far off the ball, at (dx, dy) [m] from its centre, is from the ends."""
+    radius = arc.outer if outside else arc.inner
+    touch.cx, touch.cy, touch.radius, touch.arc = arc.x, arc.y, radius, i
+    if arc.span == CLOSED:
+        touch.along, touch.length = touch.radius, 2.0 * touch.radius  # it has no ends
+        return
+    sx, sy, ex, ey = dx - radius * arc.sx, dy - radius * arc.sy, dx - radius * arc.ex, dy - radius * arc.ey
+    to_start, to_end = math.sqrt(sx * sx + sy * sy), math.sqrt(ex * ex + ey * ey)
+    touch.along, touch.length = to_end if outside else to_start, to_start + to_end
 
 
 @where("parts")

@@ -7,11 +7,13 @@ under the same gravity, so that the hit is that of a circle of twice the radius,
 import math
 
 from bounce_env.engine.compile.jit import Record, function, where
+from bounce_env.engine.detect.pairs_along_curve import meeting_along_curve
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.memory.records import OUT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import Flight, acceleration_magnitude, flight_after, flight_of, flight_rounding
 from bounce_env.engine.motion.instant import before, later, since
+from bounce_env.engine.motion.path import is_on_curve
 from bounce_env.engine.tolerances import (
     CORNER,
     LEFT_OVER,
@@ -32,7 +34,7 @@ def plan_pairs(state: State, w: int, k: int) -> None:
 
 
 @function
-def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float]:
+def _meeting_in_flight(state: State, w: int, k: int, j: int) -> tuple[float, float]:
     one, other = state.balls[w, k], state.balls[w, j]
     if OUT in (one.status, other.status):
         return math.inf, 0.0
@@ -68,6 +70,16 @@ def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float
     if not after <= horizon or after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
+
+
+@where("curve_slides", otherwise=_meeting_in_flight)
+def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float]:
+    """Return when balls `k` and `j` hit each other, if both keep to their paths: (hi, lo); inf if they do not."""
+    if (is_on_curve(state, w, k) or is_on_curve(state, w, j)) and OUT not in (
+        state.balls[w, k].status, state.balls[w, j].status,
+    ):  # fmt: skip
+        return meeting_along_curve(state, w, k, j)
+    return _meeting_in_flight(state, w, k, j)
 
 
 def _seen_from_other_ball_coasting(one: Flight, other: Flight) -> Flight:

@@ -2,7 +2,10 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Record, function, where
+from bounce_env.engine.compile.jit import function, where
+from bounce_env.engine.detect.along_curve import curve_search
+from bounce_env.engine.detect.crossings_along_curve import circle_change_along, strip_change_along
+from bounce_env.engine.detect.parts_along_curve import meet_part_along_curve
 from bounce_env.engine.impact.arc import Circle, arc_crossing_time
 from bounce_env.engine.impact.capsule import capsule_time
 from bounce_env.engine.impact.line import Line, face_time
@@ -14,6 +17,7 @@ from bounce_env.engine.motion.flight import (
     Flight,
     flight_acceleration_along,
     flight_after,
+    flight_of,
     flight_rounding,
     flight_seen_from,
     flight_seen_from_moving,
@@ -29,6 +33,7 @@ from bounce_env.engine.motion.parts import (
     part_stop_instant,
     part_surface_velocity,
 )
+from bounce_env.engine.motion.path import is_on_curve
 from bounce_env.engine.motion.roots import falling_root
 
 # The zone of a part is wider than its reach by this share: it keeps rounding of the border from hiding a hit.
@@ -36,54 +41,74 @@ ZONE_MARGIN = 1.01
 
 
 @function
-def plan_part_zones(state: State, w: int, k: int, flight: Flight, now: float) -> None:
-    """Bring the ball's zones up to `now` seconds into its flight, and set when the next of them changes.
+def plan_part_zones(state: State, w: int, k: int, now: float) -> None:
+    """Bring the ball's zones up to `now` seconds after its last event, and set when the next of them changes.
 
     The zone of a part is where it can be met: of one that slides the strip along its rail, of one that turns the circle
     about its pivot, of a dragged wall everything. It is a static sensor of the engine's own: passing its border neither
     re-bases the flight nor shows in the ledger.
     """
     state.balls[w, k].zone_after = math.inf
-    _plan_part_zones(state, w, k, flight, now)
+    _plan_part_zones(state, w, k, now)
 
 
 @where("parts", inline=False)
-def _plan_part_zones(state: State, w: int, k: int, flight: Flight, now: float) -> None:
+def _plan_part_zones(state: State, w: int, k: int, now: float) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for m in range(state.scenes[scene].parts):
         part, zone = moving_part(state, w, m), state.zones[w, k, m]
         if is_dragged_part(part):
             zone.inside, zone.after = 1, math.inf
             continue
-        seen = flight_seen_from(flight, part.shape.x, part.shape.y)
         if now == 0.0:
-            zone.inside, zone.after = 1 if _is_in_part_zone(seen, part) else 0, 0.0
+            inside = _is_in_part_zone(part, ball.x - part.shape.x, ball.y - part.shape.y)
+            zone.inside, zone.after = 1 if inside else 0, 0.0
         elif zone.after <= now:
             zone.inside = 1 - zone.inside
         if zone.after <= now:
-            zone.after = _part_zone_change(ball, seen, part, zone.inside == 1, now)
+            zone.after = _part_zone_change(state, w, k, m, zone.inside == 1, now)
             if zone.after > ball.end_after:
                 zone.after = math.inf
         ball.zone_after = min(ball.zone_after, zone.after)
 
 
 @function
-def _is_in_part_zone(seen: Flight, part: MovingPart) -> bool:
-    shape = part.shape
+def _is_in_part_zone(part: MovingPart, x: float, y: float) -> bool:
+    border, shape = _part_zone_border(part), part.shape
     if part.turn != 0:
-        border = ZONE_MARGIN * (shape.front + shape.offset_radius)
-        return seen.x * seen.x + seen.y * seen.y <= border * border
-    return abs(seen.y * shape.ux - seen.x * shape.uy) <= ZONE_MARGIN * shape.offset_radius
+        return x * x + y * y <= border * border
+    return abs(y * shape.ux - x * shape.uy) <= border
 
 
 @function
-def _part_zone_change(ball: Record, seen: Flight, part: MovingPart, inside: bool, after: float) -> float:
-    """Return when the ball next passes the border of a part's zone, no earlier than `after` [s] in its flight."""
+def _part_zone_border(part: MovingPart) -> float:
+    """Return how far [m] the zone of a part reaches from its pivot, or from its rail."""
     shape = part.shape
+    return ZONE_MARGIN * (shape.front + shape.offset_radius if part.turn != 0 else shape.offset_radius)
+
+
+@function
+def _part_zone_change_in_flight(state: State, w: int, k: int, m: int, inside: bool, after: float) -> float:
+    ball, part = state.balls[w, k], moving_part(state, w, m)
+    shape, border = part.shape, _part_zone_border(part)
+    seen = flight_seen_from(flight_of(state, ball), shape.x, shape.y)
     if part.turn != 0:
-        border = Circle(ZONE_MARGIN * (shape.front + shape.offset_radius), 1.0 if inside else -1.0)
-        return arc_crossing_time(seen, None, border, after == 0.0, ball.tolerance, after, ball.end_after)
-    return _part_strip_change(seen, shape.ux, shape.uy, ZONE_MARGIN * shape.offset_radius, inside, after)
+        circle = Circle(border, 1.0 if inside else -1.0)
+        return arc_crossing_time(seen, None, circle, after == 0.0, ball.tolerance, after, ball.end_after)
+    return _part_strip_change(seen, shape.ux, shape.uy, border, inside, after)
+
+
+@where("curve_slides", otherwise=_part_zone_change_in_flight)
+def _part_zone_change(state: State, w: int, k: int, m: int, inside: bool, after: float) -> float:
+    """Return when the ball next passes the border of part `m`'s zone, no earlier than `after` [s] on its path."""
+    if not is_on_curve(state, w, k):
+        return _part_zone_change_in_flight(state, w, k, m, inside, after)
+    part, search = moving_part(state, w, m), curve_search(state, w, k)
+    shape, border = part.shape, _part_zone_border(part)
+    x, y = shape.x - search.slide.x, shape.y - search.slide.y
+    if part.turn != 0:
+        return circle_change_along(search, x, y, border, inside, after)
+    return strip_change_along(search, shape.ux, shape.uy, x, y, border, inside, after)
 
 
 @function
@@ -105,16 +130,10 @@ def _part_strip_change(flight: Flight, ux: float, uy: float, border: float, insi
 
 
 @function
-def meet_part(
-    ball: Record, flight: Flight, part: MovingPart, side: int, leaves_after: float, extent: float
-) -> tuple[float, float]:
-    """Return the instant at which a ball hits a part while both keep their present motion: (hi, lo), inf if not.
-
-    side: on which side of a dragged wall a ball of no radius is while it touches it, otherwise 0.
-    leaves_after: duration [s] after which, from the flight's start, the ball is out of the part's reach.
-    In the frame of a part that slides the ball flies as ever, and the part is a standing capsule.
-    """
-    shape, motion = part.shape, part.motion
+def _meet_part_in_flight(state: State, w: int, k: int, m: int, side: int, leaves_after: float) -> tuple[float, float]:
+    """In the frame of a part that slides the ball flies as ever, and the part is a standing capsule."""
+    ball, part, extent = state.balls[w, k], moving_part(state, w, m), state.scenes[state.worlds[w].scene].extent
+    shape, motion, flight = part.shape, part.motion, flight_of(state, ball)
     if before(ball.hi, ball.lo, motion.hi, motion.lo):
         hi, lo = motion.hi, motion.lo
     else:
@@ -137,6 +156,18 @@ def meet_part(
     if after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
+
+
+@where("curve_slides", otherwise=_meet_part_in_flight)
+def _meet_part(state: State, w: int, k: int, m: int, side: int, leaves_after: float) -> tuple[float, float]:
+    """Return the instant at which a ball hits part `m` while both keep their present motion: (hi, lo), inf if not.
+
+    side: on which side of a dragged wall a ball of no radius is while it touches it, otherwise 0.
+    leaves_after: duration [s] after which, from its last event, the ball is out of the part's reach.
+    """
+    if is_on_curve(state, w, k):
+        return meet_part_along_curve(state, w, k, m, side, leaves_after)
+    return _meet_part_in_flight(state, w, k, m, side, leaves_after)
 
 
 @where("ends", otherwise=math.inf)
@@ -173,15 +204,15 @@ def _comes_near_dragged_part(
 
 
 @function
-def plan_part_hits(state: State, w: int, k: int, flight: Flight) -> None:
+def plan_part_hits(state: State, w: int, k: int) -> None:
     """Search the parts in whose zone the ball is, and set which one it hits first, and when."""
     ball = state.balls[w, k]
     ball.part_hi, ball.part_lo, ball.part_index = math.inf, 0.0, -1
-    _plan_part_hits(state, w, k, flight)
+    _plan_part_hits(state, w, k)
 
 
 @where("parts")
-def _plan_part_hits(state: State, w: int, k: int, flight: Flight) -> None:
+def _plan_part_hits(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = state.scenes[scene]
     for m in range(head.parts):
@@ -189,7 +220,7 @@ def _plan_part_hits(state: State, w: int, k: int, flight: Flight) -> None:
         if m == ball.rides or not zone.inside or is_off(state, w, state.parts[scene, m].element):
             continue
         side = side_of_part(state, w, k, m)
-        hi, lo = meet_part(ball, flight, moving_part(state, w, m), side, zone.after, head.extent)
+        hi, lo = _meet_part(state, w, k, m, side, zone.after)
         if before(hi, lo, ball.part_hi, ball.part_lo):
             ball.part_hi, ball.part_lo, ball.part_index = hi, lo, m
 

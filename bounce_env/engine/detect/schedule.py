@@ -7,10 +7,19 @@ a step ends. A ball in contact with a wall flies, too: along its line, under wha
 
 import math
 
-from bounce_env.engine.compile.jit import Record, function, routine
+from bounce_env.engine.compile.jit import Record, function, routine, where
+from bounce_env.engine.detect.along_curve import first_along_curve
+from bounce_env.engine.detect.crossings_along_curve import next_crossing_along
 from bounce_env.engine.detect.parts import plan_part_hits, plan_part_zones, way_off_part
 from bounce_env.engine.detect.sensors import Crossing, next_crossing
-from bounce_env.engine.detect.surfaces import first_arc, first_circle, first_end, first_face, surface_normal
+from bounce_env.engine.detect.surfaces import (
+    first_arc,
+    first_circle,
+    first_end,
+    first_face,
+    first_joint,
+    surface_normal,
+)
 from bounce_env.engine.memory.records import (
     NEXT_HIT,
     NEXT_PART,
@@ -21,19 +30,21 @@ from bounce_env.engine.memory.records import (
     ON_ARC,
     ON_CIRCLE,
     ON_FACE,
+    ON_JOINT,
     RESOLVE,
     RIDING,
 )
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of, flight_time_in_scene
 from bounce_env.engine.motion.instant import before, later
+from bounce_env.engine.motion.path import is_on_curve
 
 
 @routine
 def schedule_parts(state: State, w: int, k: int) -> None:
     """Search the parts in whose zone a ball is, and set its next event."""
     ball = state.balls[w, k]
-    plan_part_hits(state, w, k, flight_of(state, ball))
+    plan_part_hits(state, w, k)
     schedule_next_event(ball)
 
 
@@ -45,15 +56,26 @@ def schedule_crossing(state: State, w: int, k: int, after: float, kind: int, ind
 
 
 @function
+def _following_crossing_in_flight(state: State, w: int, k: int, last: Crossing) -> Crossing:
+    return next_crossing(state, w, k, flight_of(state, state.balls[w, k]), last)
+
+
+@where("curve_slides", otherwise=_following_crossing_in_flight)
+def _following_crossing(state: State, w: int, k: int, last: Crossing) -> Crossing:
+    if is_on_curve(state, w, k):
+        return next_crossing_along(state, w, k, last)
+    return _following_crossing_in_flight(state, w, k, last)
+
+
+@function
 def _plan_next_crossing(state: State, w: int, k: int, last: Crossing) -> None:
     ball = state.balls[w, k]
-    following = next_crossing(state, w, k, flight_of(state, ball), last)
+    following = _following_crossing(state, w, k, last)
     ball.sensor_after, ball.sensor_kind, ball.sensor_index = following.after, following.kind, following.row
 
 
 @function
-def schedule_standing(state: State, w: int, k: int) -> None:
-    """Search everything that stands: what ends the flight that begins now, and when."""
+def _schedule_standing_in_flight(state: State, w: int, k: int) -> None:
     ball = state.balls[w, k]
     flight = flight_of(state, ball)
     nx, ny = surface_normal(state, w, k, ball.contact)
@@ -72,6 +94,10 @@ def schedule_standing(state: State, w: int, k: int) -> None:
     if end >= 0:
         ball.hit_kind, ball.hit_index = OFF_END, end
     met = face >= 0 or circle >= 0 or arc >= 0 or end >= 0
+    joint, wall = first_joint(state, w, k, flight, after)
+    if joint < after:
+        after, met = joint, True
+        ball.hit_kind, ball.hit_index = ON_JOINT, wall
     if ball.contact == RIDING:
         off = way_off_part(state, w, k, flight)
         if off < after:
@@ -81,11 +107,22 @@ def schedule_standing(state: State, w: int, k: int) -> None:
     ball.hit_after = after if met else math.inf
 
 
+@where("curve_slides", otherwise=_schedule_standing_in_flight)
+def schedule_standing(state: State, w: int, k: int) -> None:
+    """Search everything that stands: what ends the flight or slide that begins now, and when."""
+    if is_on_curve(state, w, k):
+        ball = state.balls[w, k]
+        ball.hit_after, ball.hit_kind, ball.hit_index = first_along_curve(state, w, k)
+        ball.end_after = ball.hit_after
+    else:
+        _schedule_standing_in_flight(state, w, k)
+
+
 @function
 def schedule_rest(state: State, w: int, k: int) -> None:
     """Search what does not end the flight, or may move: sensors, zones, parts; and set the ball's next event."""
     _plan_next_crossing(state, w, k, Crossing(-1.0, -1, -1))
-    plan_part_zones(state, w, k, flight_of(state, state.balls[w, k]), 0.0)
+    plan_part_zones(state, w, k, 0.0)
     schedule_parts(state, w, k)
 
 

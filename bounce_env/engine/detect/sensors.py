@@ -33,7 +33,8 @@ def next_crossing(state: State, w: int, k: int, flight: Flight, last: Crossing) 
 
 
 @function
-def _follows_crossing(t: float, kind: int, index: int, last: Crossing) -> bool:
+def follows_crossing(t: float, kind: int, index: int, last: Crossing) -> bool:
+    """Return whether a crossing at `t` comes after `last` in the order of crossings."""
     return t > last.after or (t == last.after and (kind > last.kind or (kind == last.kind and index > last.row)))
 
 
@@ -49,7 +50,7 @@ def _first_line_crossing(state: State, w: int, k: int, flight: Flight, last: Cro
         seen, line = flight_seen_from(flight, sensor.x, sensor.y), Line(sensor.ux, sensor.uy, sensor.length, 0.0)
         for facing in (1.0, -1.0):
             t = facing_time(seen, line, facing, side, ball.tolerance, ball.end_after)
-            if t < best.after and _follows_crossing(t, LINE_SENSOR, i, last):
+            if t < best.after and follows_crossing(t, LINE_SENSOR, i, last):
                 best = Crossing(t, LINE_SENSOR, i)
     return best
 
@@ -60,12 +61,12 @@ def _first_circle_entry(state: State, w: int, k: int, flight: Flight, last: Cros
     for i in range(state.scenes[scene].circle_sensors):
         ring, outside = state.circle_sensors[scene, i], state.circle_sensor_sides[w, k, i] > 0
         # A ball may enter a circle twice in one flight: what came before is no answer.
-        tie = _follows_crossing(last.after, CIRCLE_ENTRY, i, last)
+        tie = follows_crossing(last.after, CIRCLE_ENTRY, i, last)
         after = last.after - abs(last.after) * ULP if tie else last.after
         t = arc_entry_time(
             flight_seen_from(flight, ring.x, ring.y), ring.radius, outside, ball.tolerance, after, ball.end_after
         )
-        if t < best.after and _follows_crossing(t, CIRCLE_ENTRY, i, last):
+        if t < best.after and follows_crossing(t, CIRCLE_ENTRY, i, last):
             best = Crossing(t, CIRCLE_ENTRY, i)
     return best
 
@@ -78,6 +79,6 @@ def _first_field_border(state: State, w: int, k: int, flight: Flight, last: Cros
         seen, line = flight_seen_from(flight, edge.x, edge.y), Line(edge.ux, edge.uy, math.inf, 0.0)
         for facing in (1.0, -1.0):
             t = line_time(seen, line, facing, side, ball.tolerance)
-            if t <= ball.end_after and t < best.after and _follows_crossing(t, FIELD_BORDER, i, last):
+            if t <= ball.end_after and t < best.after and follows_crossing(t, FIELD_BORDER, i, last):
                 best = Crossing(t, FIELD_BORDER, i)
     return best

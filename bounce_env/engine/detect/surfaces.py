@@ -1,11 +1,13 @@
 """What stands in the way of a ball: the earliest hit of walls, circles and arcs, and the end of what it slides on."""
 
+import math
+
 from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.impact.arc import arc_time
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.impact.line import Line, face_time, facing_time, is_beside_line, leaves_line_end
 from bounce_env.engine.memory.lookup import is_off, is_one_way, is_sliding, side_on
-from bounce_env.engine.memory.records import RIDING
+from bounce_env.engine.memory.records import CLOSED, RIDING
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import (
     Flight,
@@ -160,6 +162,64 @@ def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float
         if t < best:
             best, index = t, i
     return best, index
+
+
+def _no_joint(state: State, w: int, k: int, flight: Flight, horizon: float) -> tuple[float, int]:
+    return horizon, -1
+
+
+@where("faces", otherwise=_no_joint)
+def first_joint(state: State, w: int, k: int, flight: Flight, horizon: float) -> tuple[float, int]:
+    """Return when a ball that moves along a wall first comes to where an arc begins on it: (duration [s], wall).
+
+    There it may go on along the arc, also where the wall goes on beneath. It slides on the wall, or flies along it.
+    """
+    return _first_arc_joint(state, w, k, flight, horizon)
+
+
+@where("arcs", otherwise=_no_joint, inline=False)
+def _first_arc_joint(state: State, w: int, k: int, flight: Flight, horizon: float) -> tuple[float, int]:
+    ball, scene, best, index = state.balls[w, k], state.worlds[w].scene, horizon, -1
+    if ball.contact >= 0:
+        return _first_joint_on_face(state, w, k, flight, ball.contact, horizon), ball.contact
+    for i in range(state.scenes[scene].faces if ball.touched > 0 and ball.contact != RIDING else 0):
+        face = state.faces[scene, i]
+        if _is_level_on_face(ball, flight, face) and not is_off(state, w, face.element):
+            t = _first_joint_on_face(state, w, k, flight, i, best)
+            if t < best:
+                best, index = t, i
+    return best, index
+
+
+@function
+def _first_joint_on_face(state: State, w: int, k: int, flight: Flight, i: int, horizon: float) -> float:
+    ball, scene, best = state.balls[w, k], state.worlds[w].scene, horizon
+    face = state.faces[scene, i]
+    for j in range(state.scenes[scene].arcs):
+        arc = state.arcs[scene, j]
+        if arc.span == CLOSED or is_off(state, w, arc.element):
+            continue
+        for radius in (arc.outer, arc.inner):
+            if radius > 0.0:
+                best = _joint_time(ball, flight, face, arc.x + radius * arc.sx, arc.y + radius * arc.sy, best)
+                best = _joint_time(ball, flight, face, arc.x + radius * arc.ex, arc.y + radius * arc.ey, best)
+    return best
+
+
+@function
+def _joint_time(ball: Record, flight: Flight, face: Record, x: float, y: float, best: float) -> float:
+    """Return the earlier of `best` and when the ball comes to (x, y), if that lies on its way."""
+    dx, dy = flight.x - x, flight.y - y
+    along, rate = dx * face.ux + dy * face.uy, flight.vx * face.ux + flight.vy * face.uy
+    if abs(dy * face.ux - dx * face.uy) > 2.0 * ball.tolerance:
+        return best
+    if abs(along) <= 4.0 * ball.tolerance:  # it begins there, and may come back
+        along, sign = 0.0, math.copysign(1.0, rate)
+    else:
+        sign = math.copysign(1.0, along)
+    pull = flight_acceleration_along(flight, sign * face.ux, sign * face.uy)
+    t = falling_root(abs(along), False, sign * rate, pull)
+    return t if 0.0 < t < best else best
 
 
 def _no_face_end(state: State, w: int, k: int, flight: Flight, horizon: float) -> tuple[float, int]:

@@ -10,7 +10,7 @@ from bounce_env.engine.memory.ledger import Surface, append_crossing, count_hit
 from bounce_env.engine.memory.records import FIELD_BORDER, LINE_SENSOR, OUT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.fields import accelerate
-from bounce_env.engine.motion.flight import flight_of, flight_place_after, flight_velocity_after, fly_ball
+from bounce_env.engine.motion.path import motion_after
 
 
 @routine
@@ -30,7 +30,7 @@ def _cross_line(state: State, w: int, k: int, ledger: Table) -> None:
     ball = state.balls[w, k]
     sensor = state.sensors[state.worlds[w].scene, ball.sensor_index]
     state.sensor_sides[w, k, ball.sensor_index] = -state.sensor_sides[w, k, ball.sensor_index]
-    vx, vy = flight_velocity_after(flight_of(state, ball), ball.sensor_after)
+    _, _, vx, vy = motion_after(state, w, k, ball.sensor_after)
     facing = 1.0 if vy * sensor.ux - vx * sensor.uy < 0.0 else -1.0
     surface = Surface(sensor.element, -facing * sensor.uy, facing * sensor.ux, 0.0, 0.0)
     _report_crossing(state, w, k, sensor.drain, surface, ledger)
@@ -41,7 +41,7 @@ def _enter_circle_sensor(state: State, w: int, k: int, ledger: Table) -> None:
     ball = state.balls[w, k]
     ring = state.circle_sensors[state.worlds[w].scene, ball.sensor_index]
     state.circle_sensor_sides[w, k, ball.sensor_index] = -1
-    x, y = flight_place_after(flight_of(state, ball), ball.sensor_after)
+    x, y, _, _ = motion_after(state, w, k, ball.sensor_after)
     dx, dy = x - ring.x, y - ring.y
     distance = math.sqrt(dx * dx + dy * dy)
     _report_crossing(state, w, k, ring.drain, Surface(ring.element, dx / distance, dy / distance, 0.0, 0.0), ledger)
@@ -51,18 +51,16 @@ def _enter_circle_sensor(state: State, w: int, k: int, ledger: Table) -> None:
 def _report_crossing(state: State, w: int, k: int, drain: int, surface: Surface, ledger: Table) -> None:
     """Count and log a crossing, the surface's normal towards where the ball came from, and plan what follows it."""
     ball = state.balls[w, k]
-    flight, after = flight_of(state, ball), ball.sensor_after
     count_hit(state, w, surface.element)
-    x, y = flight_place_after(flight, after)
-    vx, vy = flight_velocity_after(flight, after)
+    x, y, vx, vy = motion_after(state, w, k, ball.sensor_after)
     append_crossing(ledger, state.worlds[w], ball, k, surface, x, y, vx, vy)
     if drain:
-        fly_ball(ball, flight, after, ball.next_hi, ball.next_lo)
+        ball.x, ball.y, ball.vx, ball.vy, ball.hi, ball.lo = x, y, vx, vy, ball.next_hi, ball.next_lo
         ball.status = OUT
         ball.next_hi, ball.next_lo = math.inf, 0.0
         plan_pairs(state, w, k)
     else:
-        schedule_crossing(state, w, k, after, ball.sensor_kind, ball.sensor_index)
+        schedule_crossing(state, w, k, ball.sensor_after, ball.sensor_kind, ball.sensor_index)
 
 
 @where("field_edges")

@@ -19,7 +19,6 @@ from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.lookup import side_of_part
 from bounce_env.engine.memory.records import CRUSH, CRUSHED, HELD, OK
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import flight_of
 from bounce_env.engine.motion.parts import (
     MovingPart,
     kept_part_offset,
@@ -51,7 +50,7 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
         surface = Surface(shape.element, ball.nx, ball.ny, ball.sux, ball.suy)
         append_contact(ledger, world, ball, k, CRUSH, surface, vx, vy)
         ball.hit_after, ball.end_after, ball.sensor_after = math.inf, math.inf, math.inf
-        plan_part_zones(state, w, k, flight_of(state, ball), 0.0)
+        plan_part_zones(state, w, k, 0.0)
         schedule_parts(state, w, k)
     plan_pairs(state, w, k)
     block_part(state, w, m, ledger)

@@ -21,7 +21,7 @@ def place(state: State, w: int, k: int, x: float, y: float, vx: float, vy: float
     ball.x, ball.y, ball.vx, ball.vy = x, y, vx, vy
     ball.hi, ball.lo = world.time_hi, world.time_lo
     ball.status = OK
-    ball.contact, ball.rides, ball.support, ball.settling, ball.rolling = FLYING, -1, -1, 0, -1
+    ball.contact, ball.rides, ball.support, ball.settling = FLYING, -1, -1, 0
     ball.struck, ball.squeezes, ball.vague = -1, 0, 0.0
     ball.confined, ball.strayed, ball.legs = 0, 0.0, 0
     ball.tolerance = ULPS_OF_LENGTH * state.scenes[world.scene].extent

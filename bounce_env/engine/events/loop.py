@@ -136,7 +136,7 @@ def _ball_event(state: State, w: int, k: int, ledger: Table) -> int:
     """Process the ball's next event; returns how many events it counts for in the budget."""
     ball = state.balls[w, k]
     if ball.next_kind == NEXT_ZONE:
-        plan_part_zones(state, w, k, flight_of(state, ball), ball.zone_after)
+        plan_part_zones(state, w, k, ball.zone_after)
         schedule_parts(state, w, k)
         return 0
     if ball.next_kind == NEXT_SENSOR:

@@ -18,7 +18,7 @@ from bounce_env.engine.impact.quartic import (
 )
 from bounce_env.engine.memory.records import CLOSED, MINOR
 from bounce_env.engine.motion.flight import Flight, flight_after, flight_place_after
-from bounce_env.engine.tolerances import PRESSING, WEIGHTLESS
+from bounce_env.engine.tolerances import PRESSING, ULP, WEIGHTLESS
 
 
 class Circle(NamedTuple):
@@ -66,6 +66,11 @@ def arc_entry_time(
     flight: Flight, radius: float, outside: bool, tolerance: float, after: float, horizon: float
 ) -> float:
     """Return when a point next enters a circle about the origin, after `after` [s] and before `horizon`, or inf."""
+    distance = math.sqrt(flight.x * flight.x + flight.y * flight.y)
+    slow = slow_on_circle(flight, radius, tolerance) * distance
+    touches = abs(distance - radius) <= tolerance and abs(flight.x * flight.vx + flight.y * flight.vy) <= slow
+    if touches and after < 0.0 and outside and _sinks_into_circle(flight):
+        return 0.0
     return arc_crossing_time(flight, None, Circle(radius, -1.0), outside, tolerance, after, horizon)
 
 
@@ -86,15 +91,8 @@ def arc_crossing_time(
     if touching and armed and approach > slow and after < 0.0 and is_in_arc_span(arc, flight.x, flight.y, tolerance):
         wait = _time_to_nearest_on_arc(flight, circle.sense, tolerance)
         return wait if wait > 0.0 else max(gap, 0.0) * distance / approach
+    # Where a ball moves along the circle the contact rules have let it: the root at the start is none.
     still = touching and abs(approach) <= slow
-    if (
-        still
-        and armed
-        and after < 0.0
-        and _sinks_into_arc(flight, circle.sense)
-        and is_in_arc_span(arc, flight.x, flight.y, tolerance)
-    ):
-        return 0.0
     return _arc_crossing(flight, arc, circle, touching, still, tolerance, after, horizon)
 
 
@@ -117,16 +115,16 @@ def _touches_arc_at(flight: Flight, arc: Any, offset_radius: float, t: float, to
 
 
 @function
-def _sinks_into_arc_coasting(flight: Flight, sense: float) -> bool:
-    return sense > 0.0 and flight.vx * flight.vx + flight.vy * flight.vy > 0.0
+def _sinks_into_circle_coasting(flight: Flight) -> bool:
+    return False
 
 
-@where("ax", otherwise=_sinks_into_arc_coasting)
-def _sinks_into_arc(flight: Flight, sense: float) -> bool:
+@where("ax", otherwise=_sinks_into_circle_coasting)
+def _sinks_into_circle(flight: Flight) -> bool:
     """Return whether a point that moves along the circle is about to cross it, by its second derivative."""
     square = flight.vx * flight.vx + flight.vy * flight.vy
     dx, dy = flight.x * flight.ax, flight.y * flight.ay
-    return sense * (square + dx + dy) > PRESSING * (square + abs(dx) + abs(dy))
+    return -(square + dx + dy) > PRESSING * (square + abs(dx) + abs(dy))
 
 
 @function
@@ -147,20 +145,24 @@ def _straight_arc_crossing(
     half = x * vx + y * vy
     if still:
         return math.inf
-    cross = x * vy - y * vx
-    inner = square * offset_radius * offset_radius - cross * cross
-    if inner <= 0.0:
-        return math.inf
-    root = math.sqrt(inner)
-    distance = math.sqrt(x * x + y * y)
-    rest = 0.0 if touching else (distance - offset_radius) * (distance + offset_radius)
-    # Each root is taken from the form that adds two terms of one sign.
-    if circle.sense > 0.0:
-        t = (root - half) / square if half < 0.0 else -rest / (root + half)
+    if touching:
+        # The root at the start has been told of; the other one, however near, is found without a difference of squares.
+        if circle.sense < 0.0 or half >= 0.0:
+            return math.inf
+        t = -2.0 * half / square
     else:
-        t = rest / (root - half) if half < 0.0 else -(root + half) / square
-    if touching and t * square <= root:  # the root at the start, of which the touch has been told
-        return math.inf
+        cross = x * vy - y * vx
+        inner = square * offset_radius * offset_radius - cross * cross
+        if inner <= 0.0:
+            return math.inf
+        root = math.sqrt(inner)
+        distance = math.sqrt(x * x + y * y)
+        rest = (distance - offset_radius) * (distance + offset_radius)
+        # Each root is taken from the form that adds two terms of one sign.
+        if circle.sense > 0.0:
+            t = (root - half) / square if half < 0.0 else -rest / (root + half)
+        else:
+            t = rest / (root - half) if half < 0.0 else -(root + half) / square
     t += _time_to_nearest_on_arc(Flight(x + vx * t, y + vy * t, vx, vy, None, None), circle.sense, tolerance)
     if t < 0.0 or t <= after or t > horizon or not is_in_arc_span(arc, x + vx * t, y + vy * t, tolerance):
         return math.inf
@@ -202,6 +204,10 @@ def _curved_arc_crossing(
         c, offset_radius = quartic_without_root_at_zero(c), math.sqrt(flight.x * flight.x + flight.y * flight.y)
     if still:
         c = quartic_without_root_at_zero(c)
+        # Let go by the circle, or about to be held again: what is left of the second derivative is rounding.
+        pull, square = abs(flight.ax) + abs(flight.ay), flight.vx * flight.vx + flight.vy * flight.vy
+        if abs(c[0]) <= pull * (tolerance + 4.0 * ULP * offset_radius) + 8.0 * ULP * square:
+            c = quartic_without_root_at_zero(c)
     borders = quartic_monotone_borders(c, horizon)
     for i in range(4):
         start, end = borders[i], borders[i + 1]

@@ -59,7 +59,8 @@ def leaves_line_end(flight: Flight, line: Line, tolerance: float) -> bool:
         return False
     if abs(abs(flight.y * line.ux - flight.x * line.uy) - line.offset_radius) > tolerance:
         return False
-    if abs(flight.vy * line.ux - flight.vx * line.uy) > slow:
+    # As generous as what counts as level on a wall: at the end there is no later hit that would set it right.
+    if abs(flight.vy * line.ux - flight.vx * line.uy) > 4.0 * slow:
         return False
     along = flight.x * line.ux + flight.y * line.uy
     lean = flight.vx * line.ux + flight.vy * line.uy

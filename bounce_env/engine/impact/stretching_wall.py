@@ -43,10 +43,10 @@ def stretching_wall_gap(
 
 
 @function
-def _stretching_wall_bound(
+def stretching_wall_bound(
     flight: Flight, pull: float, dx: float, dy: float, ex: float, ey: float, window: float
 ) -> float:
-    """Return a of the module's text over the next `window` seconds [m/s^2]."""
+    """Return A of the module's text over the next `window` seconds [m/s^2]."""
     spread = math.sqrt(ex * ex + ey * ey)
     # When the wall is shortest: where its ends are nearest to each other.
     t = min(max(-(dx * ex + dy * ey) / (spread * spread), 0.0), window)
@@ -91,7 +91,7 @@ def stretching_wall_time(
         # step that this allows.
         size = math.sqrt(now.x * now.x + now.y * now.y) + math.sqrt(rx * rx + ry * ry)
         window = min(horizon - t, 2.0 * size / (speed + spread + math.sqrt(pull * size)))
-        bound = _stretching_wall_bound(now, pull, rx, ry, ex, ey, window)
+        bound = stretching_wall_bound(now, pull, rx, ry, ex, ey, window)
         if gap <= tolerance:
             if rate < -ULPS_OF_SPEED * (speed + spread):
                 after = t + advancement_to_closing(gap, rate, bound)
@@ -99,7 +99,7 @@ def stretching_wall_time(
             rate, gap = max(rate, 0.0), max(gap, 0.0)
         before = t
         nearer = min(window, 3.0 * advancement_step(gap, rate, bound))
-        bound = _stretching_wall_bound(now, pull, rx, ry, ex, ey, nearer)
+        bound = stretching_wall_bound(now, pull, rx, ry, ex, ey, nearer)
         t += min(advancement_step(gap, rate, bound), nearer)
         if rate >= 0.0:
             # Along the surface no step is shorter than that in which a gap changes by what counts as touching.

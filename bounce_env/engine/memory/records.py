@@ -71,12 +71,11 @@ BALL = record(
     next_hi="f8", next_lo="f8", next_kind="i8",  # the ball's next event
     status="i8",
     gx="f8", gy="f8",  # acceleration: gravity and fields
-    contact="i8",  # the face that the ball slides on, FLYING, HELD or RIDING
+    contact="i8",  # the face that the ball slides on, FLYING, HELD, RIDING or ON_CURVE
     rides="i8",  # the part that carries it, sliding or held; otherwise -1
     support="i8",  # the element that it is in contact with, -1 in free flight
     settling="i8",  # SETTLES while the last bounces before a contact are summed, JAMMED between other balls, or 0
     nx="f8", ny="f8",  # normal of that contact, to the ball
-    rolling="i8",  # the element with a curve that it was last set rolling on, otherwise -1
     tolerance="f8",  # [m] what counts as touching at that instant
     vague="f8",  # [m/s] by how much another ball's push may miss its direction at that instant
     touched="i8",  # how many surfaces it touched when it was last resolved
@@ -90,11 +89,17 @@ BALL = record(
     struck="i8", squeezes="i8", sx="f8", sy="f8",  # the last strike by a closing part, see `engine.events.crushing`
     snx="f8", sny="f8", sux="f8", suy="f8",
 )  # fmt: skip
+CURVE_SLIDE = record(  # of a ball that slides on a circle or an arc, see `motion.curve_slide`
+    x="f8", y="f8", radius="f8", down_x="f8", down_y="f8",
+    sense="f8", swings="i8", complement="f8", lowest_speed="f8", rate="f8", phase="f8",
+    facing="f8", arc="i8",  # 1.0 outside, -1.0 inside; the arc, or -1 of a circle
+)  # fmt: skip
 TOUCH = record(
     nx="f8", ny="f8", ux="f8", uy="f8",  # unit normal to the ball, velocity of the surface [m/s]
     gap="f8",  # [m] to it: next to nothing, but for rounding
     curvature="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
-    along="f8", length="f8",  # [m] of a straight one: where on it the ball is, with the normal on its left
+    along="f8", length="f8",  # [m] where on it the ball is, with the normal on its left; of an arc the ways to its ends
+    cx="f8", cy="f8", radius="f8", arc="i8",  # of a curve that stands: centre [m], that of the path [m], the arc or -1
     least="f8",  # [m/s] the smallest rebound from a part, where there is one
     moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
     element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
@@ -150,7 +155,7 @@ BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = map(int, Eve
 
 
 # Kinds of standing obstacles.
-ON_FACE, ON_CIRCLE, ON_ARC, OFF_END, RESOLVE, OFF_PART = 0, 1, 2, 3, 4, 5
+ON_FACE, ON_CIRCLE, ON_ARC, OFF_END, RESOLVE, OFF_PART, OFF_CURVE, ON_JOINT = 0, 1, 2, 3, 4, 5, 6, 7
 
 # Kinds of sensors.
 LINE_SENSOR, CIRCLE_ENTRY, FIELD_BORDER = 0, 1, 2
@@ -158,8 +163,8 @@ LINE_SENSOR, CIRCLE_ENTRY, FIELD_BORDER = 0, 1, 2
 # Spans of arcs: 2 pi, up to pi, more.
 CLOSED, MINOR, MAJOR = 0, 1, 2
 
-# `contact` of a ball that is in flight, of one that rests, and of one that slides on a part.
-FLYING, HELD, RIDING = -1, -2, -3
+# `contact` of a ball that is in flight, of one that rests, of one that slides on a part, and on a circle or arc.
+FLYING, HELD, RIDING, ON_CURVE = -1, -2, -3, -4
 
 # `settling`
 SETTLES, JAMMED = 1, 2

@@ -13,6 +13,7 @@ from bounce_env.engine.compile.jit import Table
 from bounce_env.engine.memory.records import (
     BALL,
     COOLING,
+    CURVE_SLIDE,
     ENDS,
     MOTION,
     PAIR,
@@ -54,6 +55,7 @@ class State(NamedTuple):
     sensor_sides: Table  # (worlds, balls, sensors) int8
     circle_sensor_sides: Table  # (worlds, balls, rings) int8: 1 outside, -1 inside
     field_edge_sides: Table  # (worlds, balls, edges) int8: 1 on the field's side
+    curve_slides: Table  # (worlds, balls) CURVE_SLIDE; None where no circle or arc can hold a ball
     pairs: Table  # (worlds, balls, balls) PAIR, by the later and the earlier ball; None for one ball, and points
     touches: Array  # (worlds, TOUCHES) TOUCH: what a ball touches at the instant that is resolved
     disabled: Table  # (worlds, elements) int8; None where nothing can be switched off
@@ -82,6 +84,8 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
     point: whether the balls have no radius. switches: whether elements can be disabled.
     """
     parts, drag_limits, elements = tables["parts"], tables["drag_limits"], tables["elements"]
+    # Without gravity only the inside of an arc holds a ball.
+    curves = tables["arcs"] is not None or (tables["circles"] is not None and tables["gravity"] is not None)
 
     def sides(table: Table) -> Array | None:
         return None if table is None else np.zeros((worlds, balls, table.shape[1]), np.int8)
@@ -99,6 +103,7 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
         sensor_sides=sides(tables["sensors"]),
         circle_sensor_sides=sides(tables["circle_sensors"]),
         field_edge_sides=sides(tables["field_edges"]),
+        curve_slides=np.zeros((worlds, balls), CURVE_SLIDE) if curves else None,
         pairs=None if point or balls == 1 else np.zeros((worlds, balls, balls), PAIR),
         touches=np.zeros((worlds, TOUCHES), TOUCH),
         disabled=np.zeros((worlds, elements.shape[1]), np.int8) if switches else None,

@@ -146,11 +146,3 @@ def flight_path_bound(flight: Flight, t: float) -> float:
 def flight_rounding(flight: Flight, extent: float, t: float) -> float:
     """Return what counts as touching [m] after `t` seconds: the rounding of the lengths that went into it."""
     return ULPS_OF_LENGTH * (extent + flight_path_bound(flight, t))
-
-
-@function
-def fly_ball(ball: Record, flight: Flight, t: float, hi: float, lo: float) -> None:
-    """Move the ball along its flight by `t` seconds and let a new one start there, at the instant (hi, lo)."""
-    ball.x, ball.y = flight_place_after(flight, t)
-    ball.vx, ball.vy = flight_velocity_after(flight, t)
-    ball.hi, ball.lo = hi, lo

@@ -5,9 +5,9 @@ import math
 from bounce_env.engine.compile.jit import function, kernel, where
 from bounce_env.engine.memory.records import OUT, Array
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.flight import flight_of, flight_place_after, flight_velocity_after
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.motion.parts import moving_part, part_core_at, part_offset_at
+from bounce_env.engine.motion.path import motion_after
 
 
 @function
@@ -16,10 +16,7 @@ def ball_now(state: State, w: int, k: int) -> tuple[float, float, float, float]:
     ball, world = state.balls[w, k], state.worlds[w]
     if ball.status == OUT:
         return ball.x, ball.y, ball.vx, ball.vy
-    flight, t = flight_of(state, ball), since(world.time_hi, world.time_lo, ball.hi, ball.lo)
-    x, y = flight_place_after(flight, t)
-    vx, vy = flight_velocity_after(flight, t)
-    return x, y, vx, vy
+    return motion_after(state, w, k, since(world.time_hi, world.time_lo, ball.hi, ball.lo))
 
 
 @where("parts", otherwise=(math.nan, math.nan, math.nan, math.nan))

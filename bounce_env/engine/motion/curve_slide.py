@@ -139,12 +139,6 @@ def curve_slide_after(slide: CurveSlide, t: float) -> tuple[float, float, float,
 
 
 @function
-def fastest_on_curve(slide: CurveSlide) -> float:
-    """Return the speed [m/s] that a slide does not exceed."""
-    return slide.lowest_speed
-
-
-@function
 def curve_slide_acceleration(slide: CurveSlide, gx: float, gy: float) -> float:
     """Return the magnitude [m/s^2] that a slide's acceleration does not exceed."""
     return slide.lowest_speed * slide.lowest_speed / slide.radius + math.sqrt(gx * gx + gy * gy)

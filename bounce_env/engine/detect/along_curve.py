@@ -11,6 +11,7 @@ from bounce_env.engine.impact.curve_path import (
     CurveStart,
     Waypoint,
     circle_crossings,
+    crossing_point,
     curve_start,
     is_near_start,
     line_crossings,
@@ -21,7 +22,7 @@ from bounce_env.engine.impact.line import is_beside_line
 from bounce_env.engine.memory.lookup import is_off, is_one_way, side_on
 from bounce_env.engine.memory.records import CLOSED, OFF_CURVE, ON_ARC, ON_CIRCLE, ON_FACE, ON_JOINT
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.curve_slide import CurveSlide, curve_slide_of, half_angle
+from bounce_env.engine.motion.curve_slide import CurveSlide, curve_slide_of, direction_from_lowest, half_angle
 from bounce_env.engine.tolerances import ULPS_OF_SPEED
 
 
@@ -94,8 +95,7 @@ def _let_go(state: State, w: int, k: int, search: Search, first: Found) -> Found
     s, c = half_angle(math.sqrt((1.0 - height) * (1.0 + height)), -height)
     for forth in (True, False):
         right = forth == inside  # on which side of the lowest point it goes that way
-        sine, cosine = 2.0 * (s if right else -s) * c, (c - s) * (c + s)
-        nx, ny = slide.down_x * cosine - slide.down_y * sine, slide.down_y * cosine + slide.down_x * sine
+        nx, ny = direction_from_lowest(slide, s if right else -s, c)
         first = _earlier(search, first, nx, ny, forth, False, OFF_CURVE, -1)
     return first
 
@@ -108,7 +108,7 @@ def _enters(
 
     touching: whether the ball touches it where it begins; closes: and closes on it.
     """
-    nx, ny = (crossings.fx, crossings.fy) if forth else (crossings.bx, crossings.by)
+    nx, ny = crossing_point(crossings, forth)
     if not (touching and forth == search.start.forth and is_near_start(search.start, nx, ny)):
         return _earlier(search, first, nx, ny, forth, False, kind, row)
     if closes:
@@ -155,7 +155,7 @@ def _face_along(
     touching = abs(search.x * nx + search.y * ny - height) <= search.tolerance
     closes = side * facing >= 0.0 and _closes(search, search.vx * nx + search.vy * ny, 0.0)
     for forth in (True, False):
-        ex, ey = (crossings.fx, crossings.fy) if forth else (crossings.bx, crossings.by)
+        ex, ey = crossing_point(crossings, forth)
         if is_beside_line(face_line(face), slide.radius * ex - x, slide.radius * ey - y, search.tolerance):
             first = _enters(search, first, crossings, forth, touching, closes, ON_FACE, i)
     return first
@@ -213,7 +213,7 @@ def _circle_along(
     rate = -sense * (search.vx * dx + search.vy * dy) / distance
     closes = armed and _closes(search, rate, 1.0 / border)
     for forth in (True, False):
-        ex, ey = (crossings.fx, crossings.fy) if forth else (crossings.bx, crossings.by)
+        ex, ey = crossing_point(crossings, forth)
         if is_in_arc_span(arc, radius * ex - x, radius * ey - y, search.tolerance):
             first = _enters(search, first, crossings, forth, touching, closes, kind, row)
     return first

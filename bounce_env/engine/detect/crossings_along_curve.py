@@ -5,12 +5,13 @@ As `detect.sensors` and `detect.parts` for flights. A slide may go on for ever, 
 
 import math
 
-from bounce_env.engine.compile.jit import routine, where
+from bounce_env.engine.compile.jit import Record, function, routine, where
 from bounce_env.engine.detect.along_curve import Search, curve_search
 from bounce_env.engine.detect.sensors import Crossing, follows_crossing
 from bounce_env.engine.impact.curve_path import (
     Crossings,
     circle_crossings,
+    crossing_point,
     curve_time_after,
     is_near_start,
     line_crossings,
@@ -38,12 +39,8 @@ def _no_earlier_along(state: State, w: int, k: int, search: Search, last: Crossi
 def _first_line_along(state: State, w: int, k: int, search: Search, last: Crossing, best: Crossing) -> Crossing:
     scene, end = state.worlds[w].scene, state.balls[w, k].end_after
     for i in range(state.scenes[scene].sensors):
-        sensor = state.sensors[scene, i]
-        line = Line(sensor.ux, sensor.uy, sensor.length, 0.0)
-        x, y = sensor.x - search.slide.x, sensor.y - search.slide.y
-        best = _line_along(
-            search, line, x, y, state.sensor_sides[w, k, i], end, Crossing(0.0, LINE_SENSOR, i), last, best
-        )
+        sensor, of = state.sensors[scene, i], Crossing(0.0, LINE_SENSOR, i)
+        best = _line_along(search, sensor, sensor.length, state.sensor_sides[w, k, i], end, of, last, best)
     return best
 
 
@@ -51,19 +48,18 @@ def _first_line_along(state: State, w: int, k: int, search: Search, last: Crossi
 def _first_border_along(state: State, w: int, k: int, search: Search, last: Crossing, best: Crossing) -> Crossing:
     scene, end = state.worlds[w].scene, state.balls[w, k].end_after
     for i in range(state.scenes[scene].fields):
-        edge = state.field_edges[scene, i]
-        line = Line(edge.ux, edge.uy, math.inf, 0.0)
-        x, y = edge.x - search.slide.x, edge.y - search.slide.y
-        side = state.field_edge_sides[w, k, i]
-        best = _line_along(search, line, x, y, side, end, Crossing(0.0, FIELD_BORDER, i), last, best)
+        of = Crossing(0.0, FIELD_BORDER, i)
+        edge, side = state.field_edges[scene, i], state.field_edge_sides[w, k, i]
+        best = _line_along(search, edge, math.inf, side, end, of, last, best)
     return best
 
 
-@routine
+@function
 def _line_along(
-    search: Search, line: Line, x: float, y: float, side: int, end: float, of: Crossing, last: Crossing, best: Crossing
+    search: Search, row: Record, length: float, side: int, end: float, of: Crossing, last: Crossing, best: Crossing
 ) -> Crossing:
-    """Look for the crossings of a line that begins at (x, y) from the centre, endless if its length is infinite."""
+    """Look for the crossings of a line, a row of a table: from its (x, y) on, `length` [m] or endless."""
+    line, x, y = Line(row.ux, row.uy, length, 0.0), row.x - search.slide.x, row.y - search.slide.y
     radius = search.slide.radius
     for facing in (1.0, -1.0):
         nx, ny = -facing * line.uy, facing * line.ux
@@ -73,7 +69,7 @@ def _line_along(
             continue
         touching = abs(search.x * nx + search.y * ny - height) <= search.tolerance
         for forth in (True, False):
-            ex, ey = (crossings.fx, crossings.fy) if forth else (crossings.bx, crossings.by)
+            ex, ey = crossing_point(crossings, forth)
             beside = line.length == math.inf or is_beside_line(line, radius * ex - x, radius * ey - y, search.tolerance)
             if beside:
                 best = _earlier_crossing(search, crossings, forth, touching, side * facing > 0.0, end, of, last, best)
@@ -107,7 +103,7 @@ def _earlier_crossing(
 
     touching: whether the slide begins at it; before_it: and on the side that the crossing leaves.
     """
-    nx, ny = (crossings.fx, crossings.fy) if forth else (crossings.bx, crossings.by)
+    nx, ny = crossing_point(crossings, forth)
     passed = False
     if touching and forth == search.start.forth and is_near_start(search.start, nx, ny):
         passed = not before_it
@@ -156,7 +152,7 @@ def _time_at_either(search: Search, crossings: Crossings, gap: float, after: flo
     """Return when a slide next comes to either crossing later than `after` [s]; one that begins there crosses at 0."""
     best = math.inf
     for forth in (True, False):
-        nx, ny = (crossings.fx, crossings.fy) if forth else (crossings.bx, crossings.by)
+        nx, ny = crossing_point(crossings, forth)
         begins = abs(gap) <= search.tolerance and forth == search.start.forth and is_near_start(search.start, nx, ny)
         if begins:
             nx, ny = search.start.nx, search.start.ny

@@ -49,6 +49,12 @@ class Crossings(NamedTuple):
 
 
 @function
+def crossing_point(crossings: Crossings, forth: bool) -> tuple[float, float]:
+    """Return the direction from the centre of the one that is come to counter-clockwise, or of the other."""
+    return (crossings.fx, crossings.fy) if forth else (crossings.bx, crossings.by)
+
+
+@function
 def curve_start(slide: CurveSlide, nx: float, ny: float) -> CurveStart:
     """Return where a slide begins, in the direction (nx, ny) from its centre."""
     s, c = half_angle_from_lowest(slide, nx, ny)

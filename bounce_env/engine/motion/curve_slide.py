@@ -55,6 +55,13 @@ def half_angle_from_lowest(slide: CurveSlide, nx: float, ny: float) -> tuple[flo
     return half_angle(sine, slide.down_x * nx + slide.down_y * ny)
 
 
+@function
+def direction_from_lowest(slide: CurveSlide, s: float, c: float) -> tuple[float, float]:
+    """Return the direction from the centre to the point of a slide's circle with these S and C."""
+    sine, cosine = 2.0 * s * c, (c - s) * (c + s)
+    return slide.down_x * cosine - slide.down_y * sine, slide.down_y * cosine + slide.down_x * sine
+
+
 @routine
 def new_curve_slide(
     x: float, y: float, radius: float, nx: float, ny: float, speed: float, gx: float, gy: float
@@ -133,8 +140,7 @@ def curve_slide_after(slide: CurveSlide, t: float) -> tuple[float, float, float,
     if slide.swings:
         s, c, speed = sn * largest_half_angle_sine(slide), dn, cn
     s, speed = slide.sense * s, slide.sense * slide.lowest_speed * speed
-    sine, cosine = 2.0 * s * c, (c - s) * (c + s)
-    nx, ny = slide.down_x * cosine - slide.down_y * sine, slide.down_y * cosine + slide.down_x * sine
+    nx, ny = direction_from_lowest(slide, s, c)
     return slide.x + slide.radius * nx, slide.y + slide.radius * ny, -speed * ny, speed * nx
 
 

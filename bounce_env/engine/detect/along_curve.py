@@ -13,7 +13,7 @@ from bounce_env.engine.impact.curve_path import (
     circle_crossings,
     crossing_point,
     curve_start,
-    is_near_start,
+    is_next_to_start,
     line_crossings,
     waypoint,
     waypoint_time,
@@ -109,7 +109,7 @@ def _enters(
     touching: whether the ball touches it where it begins; closes: and closes on it.
     """
     nx, ny = crossing_point(crossings, forth)
-    if not (touching and forth == search.start.forth and is_near_start(search.start, nx, ny)):
+    if not (touching and forth == search.start.forth and is_next_to_start(search.start, crossings, forth)):
         return _earlier(search, first, nx, ny, forth, False, kind, row)
     if closes:
         return _earlier(search, first, search.start.nx, search.start.ny, forth, False, kind, row)

@@ -13,7 +13,7 @@ from bounce_env.engine.impact.curve_path import (
     circle_crossings,
     crossing_point,
     curve_time_after,
-    is_near_start,
+    is_next_to_start,
     line_crossings,
 )
 from bounce_env.engine.impact.line import Line, is_beside_line
@@ -105,7 +105,7 @@ def _earlier_crossing(
     """
     nx, ny = crossing_point(crossings, forth)
     passed = False
-    if touching and forth == search.start.forth and is_near_start(search.start, nx, ny):
+    if touching and forth == search.start.forth and is_next_to_start(search.start, crossings, forth):
         passed = not before_it
         if before_it:
             nx, ny = search.start.nx, search.start.ny
@@ -153,7 +153,11 @@ def _time_at_either(search: Search, crossings: Crossings, gap: float, after: flo
     best = math.inf
     for forth in (True, False):
         nx, ny = crossing_point(crossings, forth)
-        begins = abs(gap) <= search.tolerance and forth == search.start.forth and is_near_start(search.start, nx, ny)
+        begins = (
+            abs(gap) <= search.tolerance
+            and forth == search.start.forth
+            and is_next_to_start(search.start, crossings, forth)
+        )
         if begins:
             nx, ny = search.start.nx, search.start.ny
         best = min(best, curve_time_after(search.slide, search.start, nx, ny, forth, False, after))

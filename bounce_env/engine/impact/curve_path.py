@@ -127,9 +127,10 @@ def circle_crossings(radius: float, x: float, y: float, border: float, sense: fl
 
 
 @function
-def is_near_start(start: CurveStart, nx: float, ny: float) -> bool:
-    """Return whether a point lies on the same side of a path as its start: of two crossings the one next to it."""
-    return nx * start.nx + ny * start.ny > 0.5
+def is_next_to_start(start: CurveStart, crossings: Crossings, forth: bool) -> bool:
+    """Return whether one of two crossings is the one next to where a path begins: no farther from it than the other."""
+    (x, y), (ox, oy) = crossing_point(crossings, forth), crossing_point(crossings, not forth)
+    return x * start.nx + y * start.ny >= ox * start.nx + oy * start.ny
 
 
 @routine

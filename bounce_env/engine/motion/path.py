@@ -32,7 +32,7 @@ def _flight_motion_after(state: State, w: int, k: int, t: float) -> Motion:
 @where("curve_slides", otherwise=_flight_motion_after)
 def motion_after(state: State, w: int, k: int, t: float) -> Motion:
     """Return where [m] a ball is `t` seconds after its last event, and how fast [m/s]: (x, y, vx, vy)."""
-    if is_on_curve(state, w, k):
+    if is_on_curve(state, w, k) and t != 0.0:  # at its last event it may have been pushed off, and not be resolved yet
         return curve_slide_after(curve_slide_of(state.curve_slides[w, k]), t)
     return _flight_motion_after(state, w, k, t)
 

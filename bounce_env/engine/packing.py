@@ -45,6 +45,9 @@ def pack(
     if len(points) > 1:
         raise ValueError("scenes of one batch must all have a ball of radius 0, or all of radius > 0")
     tables = _packed_tables(scenes)
+    if balls > 1 and points == {False} and tables["arcs"] is not None and tables["gravity"] is None:
+        # Balls that lie on each other inside of an arc are accelerated by that alone.
+        tables["gravity"] = np.zeros((len(scenes), 2))
     if own_rows:
         tables = {name: None if t is None else np.repeat(t, worlds, axis=0) for name, t in tables.items()}
     state = new_state(tables, worlds, balls, point=points == {True}, switches=switches)

@@ -29,18 +29,21 @@ SEARCH_ENDS = 1e-9
 # Bounces resolved at one instant before the ball is left to the next event (and so to the event budget).
 BOUNCES_AT_ONE_INSTANT = 32
 
-# Hits of any two balls at one instant, and hits of one and the same two while neither has come further than this share
-# of the scene's extent (to and fro in a gap of less than 1e-9 of it, or thrown at each other again and again from next
-# to no distance). Beyond these numbers such a hit has no rebound any more; where it goes on for so many times as many,
-# between balls that something holds, they stand for as long as it takes to fall by a clearance (CLEARANCE), and again
-# until they get away.
-MEETINGS_AT_ONE_INSTANT = 256
+# A ball that has hit others so often (and 4 times more for each two balls), while it has not come further than this
+# share of the scene's extent, has no room: to and fro in a gap of less than 1e-9 of it, or thrown at each other again
+# and again from next to no distance. Its hits have no rebound any more.
 MEETINGS_WITHOUT_ROOM = 1024
 ROOM_TO_MEET = 2.0**-20
-HITS_BEFORE_STANDING = 4
 
-# Of so many hits at one instant those that are slower than this share of the fastest speed wait.
-LEFT_OVER = 2.0**-20
+# Of balls that lie on each other, closing slower than this share of sqrt(gravity times radius) is no hit.
+SLOW_HIT = 0.03
+
+# Balls nearer than this share of the scene's extent touch when a cluster of them is resolved: forces taken as constant
+# for a while let gaps open or close by a part of it.
+CLUSTER_GAP = 2.0**-31
+
+# A contact of which others leave no more than this share free depends on them: forces would be 10^5 times the weight.
+DEPENDENT = 2.0**-36
 
 # Nearer than this share of its way to a stop, a part may or may not have reached it: the stop's instant decides.
 UNSURE = 2.0**-40
@@ -52,8 +55,8 @@ BRACKETING_STEPS = 100
 # directions of both.
 PRESSING = 2.0**-40
 
-# On the round end of a part, and on another ball, there is no closed form for ever smaller bounces, nor for rolling.
-# There the smallest rebound is this share of sqrt(press / curvature), the speed at which it would let go.
+# On the round end of a part there is no closed form for ever smaller bounces, nor for rolling. There the smallest
+# rebound is this share of sqrt(press / curvature), the speed at which it would let go.
 ROLLING = 0.01
 
 # A ball between several surfaces is taken to have come to rest when it rises no more than so many tolerances of length:

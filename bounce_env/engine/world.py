@@ -47,7 +47,8 @@ class World:
     Before the first `reset` there is no ball in play, and every other method raises RuntimeError.
 
     A ball rests and slides on walls, circles and arcs, and on the straight sides of parts that stand or slide; it rolls
-    in small hops on round ends of parts, on parts that turn and on another ball. Balls of no radius do not meet.
+    in small hops on round ends of parts and on parts that turn. Balls may lie on each other, and rest so; those of no
+    radius do not meet.
     """
 
     def __init__(self, scene: Scene, balls: int = 1) -> None:
@@ -91,7 +92,7 @@ class World:
         | `time` | seconds since reset |
         | `ball` | index of the ball; -1 where a part stops |
         | `element` | index in `scene.elements`; of another ball len(scene.elements) + its index |
-        | `kind` | an `EventKind`: 0 bounce, 1 contact begins, 2 contact ends, 3 sensor, 4 part stops, 5 crushed |
+        | `kind` | an `EventKind`: bounce 0, contact begins 1, ends 2, sensor 3, part stops 4, crushed 5, absorbed 6 |
         | `x`, `y` | centre of the ball, of a part that stops a point on it [m] |
         | `nx`, `ny` | unit normal from the element to the ball; at a sensor, to where the ball came from |
         | `vx0`, `vy0`, `vx1`, `vy1` | velocity before and after [m/s] |
@@ -112,7 +113,7 @@ class World:
             world_advance_to(self._state, hi, lo, max_events, None)
             return None
         pages: list[npt.NDArray[Any]] = []
-        page = np.zeros(_LEDGER_ROWS, LEDGER)
+        page = np.zeros(_LEDGER_ROWS * self._balls, LEDGER)
         code = LEDGER_FULL
         while code == LEDGER_FULL:
             world.rows = 0

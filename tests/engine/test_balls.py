@@ -140,13 +140,13 @@ def test_a_drained_ball_is_out_and_the_others_go_on() -> None:
 
 
 def test_a_pile_stays_where_it_is() -> None:
-    """Three balls one above the other on a floor: in small hops, which lift none of them by more than 1e-4 m."""
+    """Three balls one above the other on a floor."""
     scene = Scene(gravity=(0.0, -1.0), ball=Ball(radius=R, b=0.5), rest_speed=0.002, elements=FREE.elements)
     places = [(0.0, -2.0 + R + 2 * R * k) for k in range(3)]
     world = started(scene, places, [(0.0, 0.0)] * 3)
     for _ in range(20):
         world.advance(0.1)
-        assert np.abs(world.position - places).max() < 1e-3
+        assert np.abs(world.position - places).max() < 1e-9
         assert world.status.tolist() == [OK] * 3
 
 
@@ -203,7 +203,7 @@ def test_balls_in_a_gap_of_next_to_nothing_stand(gap: float, g: float) -> None:
         assert world.position[:, 0] == pytest.approx([R, 3 * R], abs=2.0 * gap)
     assert world.velocity.tolist() == [[0.0, 0.0], [0.0, 0.0]]
     if g == 0.0:
-        assert 2 * 4096 < events < 4 * 4096  # once: then nothing moves them
+        assert 2 * 1024 < events < 4 * 1024  # once: then nothing moves them
 
 
 def test_balls_in_a_narrow_gap_do_not_stand() -> None:

@@ -102,10 +102,25 @@ class RowChecks(Known):
         a = self.walk.acceleration
         for left in projections(bearings, row.before):
             yield left
+            yield from self.kept_ahead(row, bearings, left)
             for b in bearings:
                 if self.walk.bearer is not None and b.element == self.walk.bearer.element:
                     f = self.scene.ball.f * self.scene.elements[b.element].f
                     yield from after_contact(b, bearings, left, a, f, self.rules)
+
+    def kept_ahead(
+        self, row: Row, bearings: Sequence[Bearing], v: tuple[float, float]
+    ) -> Iterator[tuple[float, float]]:
+        """The same velocity, but for what lets it leave a part that turns or stretches with the smallest rebound."""
+        for part in bearings:
+            for surface in self.surfaces(row._replace(element=part.element), 0.0) if part.moves else ():
+                short = surface.least + closing_on(part, v)
+                if short > 0.0:
+                    yield v[0] + short * part.nx, v[1] + short * part.ny
+                for other in bearings:
+                    turn = part.nx * other.ny - part.ny * other.nx
+                    if short > 0.0 and abs(turn) > 1e-9:
+                        yield v[0] + short * other.ny / turn, v[1] - short * other.nx / turn
 
     def settles(self, row: Row, surface: Surface) -> Way | None:
         """The motion along a wall that stands for the bounces still to come, where they are too small to tell."""

@@ -120,12 +120,15 @@ def test_the_runs_have_rows_of_every_kind():
 @pytest.mark.parametrize("point", [False, True])
 def test_random_moving_scenes_are_played_right(point):
     seen: Counter[int] = Counter()
+    judged = []
     for seed in range(soak_count(100 if point else 25, 3000)):
         played = at_random(seed, point=point, seconds=SECONDS, max_events=EVENTS)
         if played is not None:
             assert played.problems() == [], seed
             seen.update(played.ledger["kind"].tolist())
+            judged.append(played.ends[0].time / SECONDS)
     assert min(seen[kind] for kind in (0, 1, PART_STOPS, CRUSH)) > 0, seen
+    assert np.mean(judged) > 0.5
 
 
 def test_the_sign_of_rounding_does_not_crush():

@@ -5,7 +5,7 @@ is closed on. So a corner is right from either side, and mirror images stay mirr
 (whether it flies, slides or rests) is decided in `engine.contact.resolve`.
 """
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.compile.jit import Record, Table, function, routine, where
 from bounce_env.engine.contact.restitution import (
     along_speed,
     bounce,
@@ -27,14 +27,16 @@ from bounce_env.engine.tolerances import ALIGNED, BOUNCES_AT_ONE_INSTANT, CORNER
 
 
 @function
-def take_vague(ball: Record, touches: Table, w: int) -> None:
-    """Take from the velocity what closes on a surface only since another ball's push missed its direction."""
+def take_vague(ball: Record, touches: Table, w: int, vague: float) -> None:
+    """Take from the velocity what closes on a surface only since another ball's push missed its direction.
+
+    vague: by how much [m/s] it may have.
+    """
     for i in range(ball.touched):
         touch = touches[w, i]
         closing = closing_speed(ball, touch)
-        if 0.0 < closing <= ball.vague:
+        if 0.0 < closing <= vague:
             push_off(ball, touch, closing)
-    ball.vague = 0.0
 
 
 @function
@@ -51,14 +53,17 @@ def take_soft(ball: Record, touches: Table, w: int, extent: float) -> None:
 
 
 @function
-def fastest_closing(ball: Record, touches: Table, w: int) -> tuple[int, float]:
-    """Return of the touched surfaces the one closed on fastest, ties by element: (index, speed), -1 if none is."""
+def fastest_closing(ball: Record, touches: Table, w: int, slowest: float) -> tuple[int, float]:
+    """Return of the touched surfaces the one closed on fastest, ties by element: (index, speed), -1 if none is.
+
+    Closing no faster than `slowest` [m/s], or than rounding, is none.
+    """
     best, index, element = 0.0, -1, -1
     for i in range(ball.touched):
         touch = touches[w, i]
         closing = closing_speed(ball, touch)
         slow = slow_speed(ball, touch)
-        if closing <= slow:
+        if closing <= max(slow, slowest):
             continue
         # Alike but for rounding is a tie.
         if closing > best + slow or (closing >= best - slow and touch.element < element):
@@ -77,7 +82,7 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
     ball = state.balls[w, k]
     noise = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
     for _ in range(BOUNCES_AT_ONE_INSTANT):
-        i, closing = fastest_closing(ball, state.touches, w)
+        i, closing = fastest_closing(ball, state.touches, w, 0.0)
         if i < 0:
             return -1, -1, ball.vx, ball.vy
         if ball.touched > 1 and _is_bounce_damped(state, w, k, i, closing):
@@ -88,11 +93,27 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
             return -1, -1, ball.vx, ball.vy
         if ball.touched == 1:
             return (-1 if kicked else i), -1, ball.vx, ball.vy
-    i, _ = fastest_closing(ball, state.touches, w)
+    i, _ = fastest_closing(ball, state.touches, w, 0.0)
     vx, vy = ball.vx, ball.vy
     if i >= 0 and not _project_bounces(ball, state.touches, w, i):
         ball.status, ball.vx, ball.vy = CRUSHED, vx, vy
+    elif i >= 0:
+        _keep_ahead(ball, state.touches, w)
     return -1, i, vx, vy
+
+
+@routine
+def bounce_off_fast(state: State, w: int, k: int, slowest: float, ledger: Table) -> None:
+    """Bounce from what a ball touches and closes on faster than `slowest` [m/s], fastest first; it may get crushed."""
+    ball = state.balls[w, k]
+    for _ in range(BOUNCES_AT_ONE_INSTANT):
+        i, closing = fastest_closing(ball, state.touches, w, slowest)
+        if i < 0:
+            return
+        _bounce_from(state, w, k, i, closing, 0.0, ledger)
+        if state.parts is not None and is_crushed(ball, state.touches[w, i], state.scenes[state.worlds[w].scene]):
+            ball.status = CRUSHED
+            return
 
 
 @function
@@ -222,6 +243,27 @@ def _project_bounces(ball: Record, touches: Table, w: int, first: int) -> bool:
                 return True
     note_strike(ball, touches[w, striker])
     return False
+
+
+@function
+def _keep_ahead(ball: Record, touches: Table, w: int) -> None:
+    """Let a ball that has come to keep up with a part that turns or stretches leave it with the smallest rebound.
+
+    Along whatever else it touches: there is no closed form for how it would be pushed along that.
+    """
+    for i in range(ball.touched):
+        part = touches[w, i]
+        short = part.least + closing_speed(ball, part)
+        if not part.moves or short <= 0.0 or surface_speed(part) <= 0.0:
+            continue
+        x, y = part.nx, part.ny
+        for j in range(ball.touched):
+            other = touches[w, j]
+            turn = part.nx * other.ny - part.ny * other.nx
+            if x * other.nx + y * other.ny < 0.0 and abs(turn) > ALIGNED:
+                x, y = other.ny / turn, -other.nx / turn
+        ball.vx, ball.vy = ball.vx + short * x, ball.vy + short * y
+        return
 
 
 @function

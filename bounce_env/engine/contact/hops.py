@@ -55,7 +55,7 @@ def _roll(state: State, w: int, k: int, ledger: Table) -> None:
 def _keep_off(state: State, w: int, k: int, ledger: Table) -> None:
     """After a small hop: let the ball leave along what the hop closes on."""
     ball = state.balls[w, k]
-    other, closing = fastest_closing(ball, state.touches, w)
+    other, closing = fastest_closing(ball, state.touches, w, 0.0)
     if other >= 0:
         touch, vx0, vy0 = state.touches[w, other], ball.vx, ball.vy
         push_off(ball, touch, closing)

@@ -7,7 +7,8 @@ Ever smaller bounces that lead to a contact with a straight surface are summed i
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function
-from bounce_env.engine.contact.bounces import bounce_from_all, count_bounce, surface_of, take_soft, take_vague
+from bounce_env.engine.contact.bounces import bounce_from_all, count_bounce, surface_of, take_soft
+from bounce_env.engine.contact.cluster import resolve_cluster
 from bounce_env.engine.contact.hops import hop_on
 from bounce_env.engine.contact.resting import bear, find_contact, is_slow
 from bounce_env.engine.contact.restitution import (
@@ -22,7 +23,7 @@ from bounce_env.engine.contact.restitution import (
 )
 from bounce_env.engine.contact.sides import update_crossing_sides
 from bounce_env.engine.contact.touching import collect_touches, keep_outside_touched
-from bounce_env.engine.detect.pairs import plan_pairs
+from bounce_env.engine.detect.pairs import is_pressed_by_balls, plan_pairs
 from bounce_env.engine.detect.schedule import schedule_rest, schedule_standing
 from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import (
@@ -57,6 +58,9 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     at_once: whether its flight has ended where it began, by something that it was to hit.
     """
     ball = state.balls[w, k]
+    if is_pressed_by_balls(state, w, k):
+        resolve_cluster(state, w, k, ledger)
+        return
     if abs(ball.vx) + abs(ball.vy) < STANDING:
         ball.vx, ball.vy = 0.0, 0.0
     extent = state.scenes[state.worlds[w].scene].extent
@@ -133,8 +137,6 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
     Returns after how long [s] it is to be looked at again because its last bounces are summed up to then, otherwise -1.
     """
     ball, bounces = state.balls[w, k], state.worlds[w].bounces
-    if ball.vague > 0.0:
-        take_vague(ball, state.touches, w)
     if at_once and state.gravity is not None:
         take_soft(ball, state.touches, w, state.scenes[state.worlds[w].scene].extent)
     single, corner, vx0, vy0 = bounce_from_all(state, w, k, ledger)

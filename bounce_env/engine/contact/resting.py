@@ -131,10 +131,11 @@ def _carrier(ball: Record, touches: Table, w: int) -> int:
 
 @function
 def _carries_alone(ball: Record, touch: Record) -> bool:
-    """Whether a surface is level beneath the ball, which does not move away: its bounces there are summed instead."""
+    """Whether a surface is level beneath a ball that moves neither away nor along: its bounces are summed instead."""
     level = abs(ball.gx * touch.ny - ball.gy * touch.nx) <= ALIGNED * (abs(ball.gx) + abs(ball.gy))
     beneath = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
-    return level and beneath and is_standing(touch) and closing_speed(ball, touch) >= -slow_speed(ball, touch)
+    stays = closing_speed(ball, touch) >= -slow_speed(ball, touch) and along_speed(ball, touch) == 0.0
+    return level and beneath and is_standing(touch) and stays
 
 
 @function

@@ -44,6 +44,19 @@ def take_opposed(ball: Record, head: Record, nx: float, ny: float) -> bool:
 
 
 @function
+def is_to_be_crushed(ball: Record) -> bool:
+    """Return whether the next strike of the part that has the ball caught crushes it."""
+    return ball.struck >= 0 and ball.squeezes >= SQUEEZES
+
+
+@function
+def doom(ball: Record, touch: Record) -> None:
+    """Let the next strike of a part crush a ball that nothing lets get away."""
+    note_strike(ball, touch)
+    ball.squeezes = SQUEEZES
+
+
+@function
 def note_strike(ball: Record, touch: Record) -> None:
     ball.struck, ball.squeezes, ball.sx, ball.sy = touch.part, 0, ball.x, ball.y
     ball.snx, ball.sny, ball.sux, ball.suy = touch.nx, touch.ny, touch.ux, touch.uy

@@ -5,8 +5,8 @@ The ball does not move while its bounces at one instant are resolved, so the lis
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.contact.restitution import is_standing
+from bounce_env.engine.compile.jit import Record, Table, function, routine, where
+from bounce_env.engine.contact.restitution import closing_speed, is_standing
 from bounce_env.engine.detect.surfaces import face_line
 from bounce_env.engine.impact.arc import is_in_arc_span
 from bounce_env.engine.impact.line import is_beside_line
@@ -22,7 +22,7 @@ from bounce_env.engine.motion.parts import (
     part_spin,
     part_surface_velocity,
 )
-from bounce_env.engine.tolerances import ROLLING
+from bounce_env.engine.tolerances import CLUSTER_GAP, ROLLING
 
 
 @function
@@ -48,6 +48,19 @@ def keep_outside_touched(ball: Record, touches: Table, w: int) -> None:
     for i in range(ball.touched):
         touch = touches[w, i]
         if (pushed and touch.part < 0) or (moved and is_standing(touch)):
+            ball.x, ball.y = ball.x - touch.gap * touch.nx, ball.y - touch.gap * touch.ny
+
+
+@routine
+def keep_beside(state: State, w: int, k: int) -> None:
+    """Put a ball that has been moved by less than a cluster's tolerance exactly beside what it does not leave."""
+    ball, tolerance = state.balls[w, k], state.balls[w, k].tolerance
+    ball.tolerance = 2.0 * CLUSTER_GAP * state.scenes[state.worlds[w].scene].extent
+    collect_touches(state, w, k)
+    ball.tolerance = tolerance
+    for i in range(ball.touched):
+        touch = state.touches[w, i]
+        if touch.gap < 0.0 or closing_speed(ball, touch) >= 0.0 or touch.element == ball.support:
             ball.x, ball.y = ball.x - touch.gap * touch.nx, ball.y - touch.gap * touch.ny
 
 

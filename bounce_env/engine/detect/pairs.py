@@ -7,7 +7,7 @@ under the same gravity, so that the hit is that of a circle of twice the radius,
 import math
 
 from bounce_env.engine.compile.jit import Record, function, where
-from bounce_env.engine.detect.pairs_along_curve import meeting_along_curve
+from bounce_env.engine.detect.pairs_along_curve import meeting_along_curve, time_to_press
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.memory.records import OUT
 from bounce_env.engine.memory.state import State
@@ -15,11 +15,9 @@ from bounce_env.engine.motion.flight import Flight, acceleration_magnitude, flig
 from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.motion.path import is_on_curve
 from bounce_env.engine.tolerances import (
-    CORNER,
-    LEFT_OVER,
-    MEETINGS_AT_ONE_INSTANT,
+    MEETINGS_WITHOUT_ROOM,
     PRESSING,
-    ULPS_OF_LENGTH,
+    SLOW_HIT,
     ULPS_OF_SPEED,
 )
 
@@ -50,23 +48,21 @@ def _meeting_in_flight(state: State, w: int, k: int, j: int) -> tuple[float, flo
     seen = _seen_from_other_ball(of_one, of_other)
     offset_radius, noise = 2.0 * head.ball_radius, pair_noise(one, other, of_one, of_other, head)
     closing = -(seen.x * seen.vx + seen.y * seen.vy) / offset_radius
-    if seen.x * seen.x + seen.y * seen.y <= (offset_radius + tolerance) * (offset_radius + tolerance):
-        if abs(closing) <= noise:
-            # They neither close on each other nor come apart by more than rounding.
-            off, turn = (
-                _drawn_off_other_ball(seen, offset_radius),
-                (seen.vx * seen.vx + seen.vy * seen.vy) / offset_radius,
-            )
-            if off >= 0.0:
-                return math.inf, 0.0
-            # Of balls that are a little deep in each other a search would find no hit. Pressed for sure, though one
-            # moves along the other: `_least_pair_rebound` is to find so, too, or it would be told of for ever.
-            if off + turn < -2.0 * PRESSING * (pair_weight(one, other) + turn):
-                return hi, lo
-        elif closing > 0.0 and may_pair_wait(state.worlds[w], closing, hi, lo):
-            after = CORNER * ULPS_OF_LENGTH * head.extent / closing
-            return later(hi, lo, after) if after <= horizon else (math.inf, 0.0)
-    after = circle_time(seen, offset_radius, tolerance, horizon)
+    touch = seen.x * seen.x + seen.y * seen.y <= (offset_radius + tolerance) * (offset_radius + tolerance)
+    if touch and abs(closing) <= noise:
+        # They neither close on each other nor come apart by more than rounding.
+        off = _drawn_off_other_ball(seen, offset_radius)
+        turn = (seen.vx * seen.vx + seen.vy * seen.vy) / offset_radius
+        if off >= 0.0:
+            return math.inf, 0.0
+        if off + turn <= 2.0 * PRESSING * (pair_weight(one, other) + turn):
+            third = _third_derivative(seen, offset_radius)
+            return _instant_before_horizon(hi, lo, time_to_press(off + turn, third, head.extent), horizon)
+    return _instant_before_horizon(hi, lo, circle_time(seen, offset_radius, tolerance, horizon), horizon)
+
+
+@function
+def _instant_before_horizon(hi: float, lo: float, after: float, horizon: float) -> tuple[float, float]:
     if not after <= horizon or after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
@@ -75,6 +71,8 @@ def _meeting_in_flight(state: State, w: int, k: int, j: int) -> tuple[float, flo
 @where("curve_slides", otherwise=_meeting_in_flight)
 def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float]:
     """Return when balls `k` and `j` hit each other, if both keep to their paths: (hi, lo); inf if they do not."""
+    if state.pairs[w, k, j].pressed:  # what is resolved as one needs no search
+        return math.inf, 0.0
     if (is_on_curve(state, w, k) or is_on_curve(state, w, j)) and OUT not in (
         state.balls[w, k].status, state.balls[w, j].status,
     ):  # fmt: skip
@@ -91,6 +89,14 @@ def _seen_from_other_ball(one: Flight, other: Flight) -> Flight:
     """Return the flight of one ball as seen from another one."""
     ax, ay = one.ax - other.ax, one.ay - other.ay
     return Flight(one.x - other.x, one.y - other.y, one.vx - other.vx, one.vy - other.vy, ax, ay)
+
+
+@where("ax", otherwise=0.0)
+def _third_derivative(seen: Flight, offset_radius: float) -> float:
+    """Return the third derivative [m/s^3] of the gap to a ball at the origin, the first two of which are 0."""
+    along = (seen.x * seen.vy - seen.y * seen.vx) / offset_radius
+    pull = (seen.x * seen.ay - seen.y * seen.ax) / offset_radius
+    return 3.0 * along * pull / offset_radius
 
 
 @where("ax", otherwise=0.0)
@@ -118,14 +124,47 @@ def first_pair(state: State, w: int, until_hi: float, until_lo: float) -> tuple[
     return hi, lo, one, other
 
 
-@function
-def may_pair_wait(world: Record, closing: float, hi: float, lo: float) -> bool:
-    """Return whether a hit of touching balls at the instant (hi, lo) may wait until they are as deep as a corner's gap.
+@where("pairs")
+def let_all_go(state: State, w: int) -> None:
+    """No ball is pressed on another one yet."""
+    for k in range(state.pairs.shape[1]):
+        for j in range(k):
+            state.pairs[w, k, j].pressed = 0
 
-    It may where it is so slow, `closing` [m/s], that it is left of many faster ones at this instant.
+
+@where("pairs", otherwise=False)
+def is_pressed_by_balls(state: State, w: int, k: int) -> bool:
+    """Return whether ball `k` is pressed on another one."""
+    pressed = False
+    for j in range(state.balls.shape[1]):
+        pressed = pressed or (j != k and state.pairs[w, max(j, k), min(j, k)].pressed == 1)
+    return pressed
+
+
+@function
+def has_no_room(state: State, ball: Record) -> bool:
+    """Return whether a ball keeps hitting others without coming any further."""
+    balls = state.balls.shape[1]
+    return ball.meets > MEETINGS_WITHOUT_ROOM + 4 * balls * balls
+
+
+@function
+def slowest_rebound(state: State, w: int, ball: Record) -> float:
+    """Return the speed [m/s] up to which hits of a ball that lies on others have no rebound.
+
+    A share of the speed that falling by its radius gives. What follows a curve lies on others without gravity, too.
     """
-    at_once = world.meets > MEETINGS_AT_ONE_INSTANT and hi == world.meet_hi and lo == world.meet_lo
-    return at_once and closing <= LEFT_OVER * world.meet_speed
+    head = state.scenes[state.worlds[w].scene]
+    pull = max(acceleration_magnitude(ball.gx, ball.gy), acceleration_magnitude(ball.ax, ball.ay))
+    return max(head.rest_speed, SLOW_HIT * math.sqrt(pull * head.ball_radius)) if pull > 0.0 else 0.0
+
+
+@function
+def slowest_pair_rebound(state: State, w: int, one: Record, other: Record) -> float:
+    """Return the same of a hit of two balls; inf where neither has any room."""
+    if has_no_room(state, one) and has_no_room(state, other):
+        return math.inf
+    return max(slowest_rebound(state, w, one), slowest_rebound(state, w, other))
 
 
 @function

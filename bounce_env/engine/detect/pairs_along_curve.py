@@ -2,12 +2,29 @@
 
 import math
 
-from bounce_env.engine.compile.jit import routine
+from bounce_env.engine.compile.jit import function, routine
 from bounce_env.engine.impact.advancement import advancement_step, advancement_to_closing
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.motion.path import acceleration_bound, acceleration_in, motion_after, path_length_bound
-from bounce_env.engine.tolerances import PRESSING, SEARCH_STEPS, ULPS_OF_LENGTH, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import CLUSTER_GAP, PRESSING, SEARCH_STEPS, ULPS_OF_LENGTH, ULPS_OF_SPEED
+
+# [s] as long as balls that touch are not looked at again, at most.
+LONGEST_LOOK = 64.0
+
+
+@function
+def time_to_press(second: float, third: float, extent: float) -> float:
+    """Return after how long [s] two balls that touch and neither close nor open are to be resolved; inf: never.
+
+    second, third: derivatives [m/s^2, m/s^3] of their gap. What they overlap by then is a part of what a cluster may.
+    """
+    if second >= 0.0 and third >= 0.0:
+        return math.inf
+    seconds, second, third = LONGEST_LOOK, max(-second, 0.0), max(-third, 0.0)
+    while (0.5 * second + third / 6.0 * seconds) * (seconds * seconds) > 0.25 * CLUSTER_GAP * extent:
+        seconds *= 0.5
+    return seconds
 
 
 @routine
@@ -43,7 +60,8 @@ def meeting_along_curve(state: State, w: int, k: int, j: int) -> tuple[float, fl
                 turn = (vx * vx + vy * vy) / border
                 opens = (x * (ax - bx) + y * (ay - by)) / distance + turn
                 if opens < -2.0 * PRESSING * (bound + turn):
-                    return hi, lo  # the one lies on the other
+                    after = time_to_press(opens, 0.0, head.extent)  # the one lies on the other
+                    return later(hi, lo, after) if after <= horizon else (math.inf, 0.0)
                 rate = 0.0
             away = max(distance - border, 0.0) if rate >= 0.0 else 0.0
         gap = distance - border - away

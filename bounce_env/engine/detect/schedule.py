@@ -28,6 +28,7 @@ from bounce_env.engine.memory.records import (
     OFF_END,
     OFF_PART,
     ON_ARC,
+    ON_BALLS,
     ON_CIRCLE,
     ON_FACE,
     ON_JOINT,
@@ -79,7 +80,7 @@ def _schedule_standing_in_flight(state: State, w: int, k: int) -> None:
     ball = state.balls[w, k]
     flight = flight_of(state, ball)
     nx, ny = surface_normal(state, w, k, ball.contact)
-    if ball.contact == RIDING:
+    if ball.contact in (RIDING, ON_BALLS):
         nx, ny = ball.nx, ball.ny
     after = flight_time_in_scene(flight, state.scenes[state.worlds[w].scene].extent)
     after, face = first_face(state, w, k, flight, nx, ny, after)
@@ -131,6 +132,14 @@ def schedule_resolve(ball: Record) -> None:
     """Let the ball's next event be at the instant of its last: to bounce from what it touches, and to be planned."""
     ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, 0.0, 0.0
     ball.sensor_after, ball.zone_after, ball.part_hi, ball.part_lo = math.inf, math.inf, math.inf, 0.0
+    schedule_next_event(ball)
+
+
+@function
+def schedule_nothing(ball: Record) -> None:
+    """Let the ball have no next event: another ball's comes first, at this instant, and plans this one anew."""
+    ball.hit_after, ball.end_after, ball.sensor_after, ball.zone_after = math.inf, math.inf, math.inf, math.inf
+    ball.part_hi, ball.part_lo = math.inf, 0.0
     schedule_next_event(ball)
 
 

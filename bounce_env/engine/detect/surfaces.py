@@ -7,7 +7,7 @@ from bounce_env.engine.impact.arc import arc_time
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.impact.line import Line, face_time, facing_time, is_beside_line, leaves_line_end
 from bounce_env.engine.memory.lookup import is_off, is_one_way, is_sliding, side_on
-from bounce_env.engine.memory.records import CLOSED, RIDING
+from bounce_env.engine.memory.records import CLOSED, LEANS, RIDING
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import (
     Flight,
@@ -17,7 +17,7 @@ from bounce_env.engine.motion.flight import (
     swept_interval,
 )
 from bounce_env.engine.motion.roots import falling_root
-from bounce_env.engine.tolerances import PRESSING, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import CLUSTER_GAP, PRESSING, ULPS_OF_SPEED
 
 Box = tuple[float, float, float, float]  # left, right, below, above [m]
 
@@ -41,9 +41,35 @@ def surface_normal(state: State, w: int, k: int, i: int) -> tuple[float, float]:
 
 
 @function
+def _height_over(ball: Record, face: Record) -> float:
+    """Return the height [m] of a ball's centre over the line of a wall."""
+    height: float = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
+    return height
+
+
+@where("pairs", otherwise=False)
+def _is_left_to_cluster(state: State, w: int, ball: Record, gap: float, rate: float) -> bool:
+    """Return whether a surface needs no search: the ball leans on others, with which it is resolved before long.
+
+    That is so where it touches the surface, and moves along it nearly: `gap` [m] and `rate` [m/s].
+    """
+    room = CLUSTER_GAP * state.scenes[state.worlds[w].scene].extent
+    pull = abs(ball.gx) + abs(ball.gy) + abs(ball.ax) + abs(ball.ay)
+    return ball.settling == LEANS and gap <= room and rate * rate <= 8.0 * room * pull
+
+
+@function
+def _is_circle_left_to_cluster(state: State, w: int, ball: Record, seen: Flight, radius: float) -> bool:
+    """Return the same of a circle about the origin, from outside or inside."""
+    distance = math.sqrt(seen.x * seen.x + seen.y * seen.y)
+    rate = (seen.x * seen.vx + seen.y * seen.vy) / distance if distance > 0.0 else 0.0
+    return _is_left_to_cluster(state, w, ball, abs(distance - radius), rate)
+
+
+@function
 def _is_level_on_face(ball: Record, flight: Flight, face: Record) -> bool:
     """Return whether a ball touches a wall and keeps doing so: it moves along it, and nothing pulls it off."""
-    height = (ball.y - face.y) * face.ux - (ball.x - face.x) * face.uy
+    height = _height_over(ball, face)
     if abs(abs(height) - face.offset_radius) > ball.tolerance:
         return False
     rate = ball.vy * face.ux - ball.vx * face.uy
@@ -76,6 +102,10 @@ def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: floa
         if is_off(state, w, face.element):
             continue
         if is_sliding(ball) and (i == ball.contact or _is_level_on_face(ball, flight, face)):
+            continue
+        if _is_left_to_cluster(
+            state, w, ball, abs(_height_over(ball, face)) - face.offset_radius, ball.vy * face.ux - ball.vx * face.uy
+        ):
             continue
         from_start, side = flight_seen_from(flight, face.x, face.y), side_on(state.face_sides, w, k, i)
         if is_one_way(state, scene, i):
@@ -138,6 +168,8 @@ def first_circle(
         if _is_off_box(circle, circle.offset_radius + ball.tolerance, box):
             continue
         seen = flight_seen_from(flight, circle.x, circle.y)
+        if _is_circle_left_to_cluster(state, w, ball, seen, circle.offset_radius):
+            continue
         if is_off(state, w, circle.element) or _slides_past_circle(ball, nx, ny, seen.x, seen.y, circle.offset_radius):
             continue
         t = circle_time(seen, circle.offset_radius, ball.tolerance, best)
@@ -157,6 +189,10 @@ def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float
         if _is_off_box(arc, arc.outer + ball.tolerance, box) or is_off(state, w, arc.element):
             continue
         seen = flight_seen_from(flight, arc.x, arc.y)
+        if _is_circle_left_to_cluster(state, w, ball, seen, arc.outer) or _is_circle_left_to_cluster(
+            state, w, ball, seen, arc.inner
+        ):
+            continue
         past = _slides_past_circle(ball, nx, ny, seen.x, seen.y, arc.outer)
         t = arc_time(seen, arc, side_on(state.arc_sides, w, k, i), past, ball.tolerance, best)
         if t < best:

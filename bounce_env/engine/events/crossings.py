@@ -6,6 +6,7 @@ from bounce_env.engine.compile.jit import Table, routine, where
 from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.detect.pairs import plan_pairs
 from bounce_env.engine.detect.schedule import schedule_crossing, schedule_resolve
+from bounce_env.engine.events.flights import let_go
 from bounce_env.engine.memory.ledger import Surface, append_crossing, count_hit
 from bounce_env.engine.memory.records import FIELD_BORDER, LINE_SENSOR, OUT
 from bounce_env.engine.memory.state import State
@@ -58,6 +59,7 @@ def _report_crossing(state: State, w: int, k: int, drain: int, surface: Surface,
         ball.x, ball.y, ball.vx, ball.vy, ball.hi, ball.lo = x, y, vx, vy, ball.next_hi, ball.next_lo
         ball.status = OUT
         ball.next_hi, ball.next_lo = math.inf, 0.0
+        let_go(state, w, k)
         plan_pairs(state, w, k)
     else:
         schedule_crossing(state, w, k, ball.sensor_after, ball.sensor_kind, ball.sensor_index)

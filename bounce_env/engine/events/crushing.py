@@ -6,7 +6,7 @@ from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.detect.pairs import plan_pairs
 from bounce_env.engine.detect.parts import plan_part_zones
 from bounce_env.engine.detect.schedule import schedule_parts, schedule_resolve
-from bounce_env.engine.events.flights import disturb
+from bounce_env.engine.events.flights import disturb, let_go
 from bounce_env.engine.events.part_stops import (
     block_part,
     end_rides,
@@ -52,6 +52,7 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
         ball.hit_after, ball.end_after, ball.sensor_after = math.inf, math.inf, math.inf
         plan_part_zones(state, w, k, 0.0)
         schedule_parts(state, w, k)
+        let_go(state, w, k)
     plan_pairs(state, w, k)
     block_part(state, w, m, ledger)
 

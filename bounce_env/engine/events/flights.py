@@ -18,12 +18,13 @@ from bounce_env.engine.tolerances import ULPS_OF_LENGTH
 def place(state: State, w: int, k: int, x: float, y: float, vx: float, vy: float) -> None:
     """Put ball `k` into flight at (x, y) [m] with velocity (vx, vy) [m/s] at the world's present time."""
     ball, world = state.balls[w, k], state.worlds[w]
+    let_go(state, w, k)
     ball.x, ball.y, ball.vx, ball.vy = x, y, vx, vy
     ball.hi, ball.lo = world.time_hi, world.time_lo
     ball.status = OK
     ball.contact, ball.rides, ball.support, ball.settling = FLYING, -1, -1, 0
-    ball.struck, ball.squeezes, ball.vague = -1, 0, 0.0
-    ball.confined, ball.strayed, ball.legs = 0, 0.0, 0
+    ball.struck, ball.squeezes = -1, 0
+    ball.confined, ball.strayed, ball.meets = 0, 0.0, 0
     ball.tolerance = ULPS_OF_LENGTH * state.scenes[world.scene].extent
     set_initial_sides(state, w, k)
     accelerate(state, w, k)
@@ -56,6 +57,15 @@ def disturb(state: State, w: int, k: int, drag: float, dvx: float, dvy: float) -
     update_crossing_sides(state, w, k)
     ball.vx, ball.vy = drag * ball.vx + dvx, drag * ball.vy + dvy
     schedule_resolve(ball)
+
+
+@where("pairs", inline=False)
+def let_go(state: State, w: int, k: int) -> None:
+    """Resolve the balls that ball `k` has been pressed on anew: it is no longer there."""
+    for j in range(state.balls.shape[1]):
+        if j != k and state.pairs[w, max(j, k), min(j, k)].pressed:
+            state.pairs[w, max(j, k), min(j, k)].pressed = 0
+            disturb(state, w, j, 1.0, 0.0, 0.0)
 
 
 @where("drags")

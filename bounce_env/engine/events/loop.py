@@ -9,10 +9,9 @@ import math
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.arrival import end_flight, snap_to_hit
 from bounce_env.engine.contact.collisions import collide
-from bounce_env.engine.contact.jams import forget_meetings
 from bounce_env.engine.contact.resolve import resolve
 from bounce_env.engine.contact.sides import update_sides
-from bounce_env.engine.detect.pairs import first_pair
+from bounce_env.engine.detect.pairs import first_pair, let_all_go
 from bounce_env.engine.detect.parts import plan_part_zones
 from bounce_env.engine.detect.schedule import schedule_parts
 from bounce_env.engine.events.crossings import cross_next
@@ -31,8 +30,8 @@ DONE, BUDGET_SPENT, LEDGER_FULL = 0, 1, 2
 # What comes next.
 NOTHING, OF_BALL, OF_PAIR, OF_PART = -1, 0, 1, 2
 
-# Bounces, the end of a contact and the beginning of another, a small hop and what is in its way, a crush and the stop
-# of a wall's two ends.
+# Of one ball: bounces, the end of a contact and the beginning of another, a small hop and what is in its way, a crush,
+# and the stop of a wall's two ends.
 ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 7
 
 
@@ -52,7 +51,7 @@ def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int,
         if world.events >= max_events:
             _stop_for_budget(state, w)
             return BUDGET_SPENT
-        if ledger is not None and world.rows + ROWS_AT_ONE_EVENT > len(ledger):
+        if ledger is not None and world.rows + _rows_at_one_event(state) > len(ledger):
             return LEDGER_FULL
         world.time_hi, world.time_lo = hi, lo
         if what == OF_BALL:
@@ -63,6 +62,12 @@ def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int,
         else:
             stop_part(state, w, i, ledger)
             world.events += 1
+
+
+@where("pairs", otherwise=ROWS_AT_ONE_EVENT)
+def _rows_at_one_event(state: State) -> int:
+    """Return how many rows one event may have: of a cluster two for each contact and three for each ball besides."""
+    return ROWS_AT_ONE_EVENT + 2 * state.contacts.shape[1] + 3 * state.balls.shape[1]
 
 
 @function
@@ -182,8 +187,8 @@ def restart(state: State, w: int) -> None:
     world = state.worlds[w]
     world.time_hi, world.time_lo = 0.0, 0.0
     world.bounces, world.speed_capped, world.rows = 0, 0, 0
-    world.drag_hi, world.drag_lo, world.meet_hi, world.meet_lo = -1.0, 0.0, -math.inf, 0.0
-    forget_meetings(state, w)
+    world.drag_hi, world.drag_lo = -1.0, 0.0
+    let_all_go(state, w)
     clear_hits(state, w)
     _cool_down(state, w)
     _enable_all(state, w)

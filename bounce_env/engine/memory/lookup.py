@@ -1,7 +1,7 @@
 """What kernels look up in the state, where a batch may have none of it."""
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.memory.records import RIDING
+from bounce_env.engine.memory.records import ON_BALLS, RIDING
 from bounce_env.engine.memory.state import State
 
 
@@ -45,5 +45,5 @@ def side_on(sides: Table, w: int, k: int, i: int) -> int:
 
 @function
 def is_sliding(ball: Record) -> bool:
-    """Return whether a ball slides on a wall or on the straight side of a part."""
-    return ball.contact >= 0 or ball.contact == RIDING
+    """Return whether a ball moves along a wall, the straight side of a part, or what it and others lie on."""
+    return ball.contact >= 0 or ball.contact in (RIDING, ON_BALLS)

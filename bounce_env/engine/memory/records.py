@@ -60,8 +60,6 @@ WORLD = record(
     drag_hi="f8", drag_lo="f8",  # when drag acted last
     dirty="i8",  # whether `hits` has entries of the last step
     rows="i8",  # of the ledger in use
-    meet_hi="f8", meet_lo="f8",  # when two balls last hit each other
-    meets="i8", meet_speed="f8",  # at that instant: how often any two did, and the fastest [m/s] of them
 )  # fmt: skip
 
 # What a step without events reads comes first: it lies together in memory.
@@ -71,16 +69,15 @@ BALL = record(
     next_hi="f8", next_lo="f8", next_kind="i8",  # the ball's next event
     status="i8",
     gx="f8", gy="f8",  # acceleration: gravity and fields
-    contact="i8",  # the face that the ball slides on, FLYING, HELD, RIDING or ON_CURVE
+    contact="i8",  # the face that the ball slides on, FLYING, HELD, RIDING, ON_CURVE or ON_BALLS
     rides="i8",  # the part that carries it, sliding or held; otherwise -1
     support="i8",  # the element that it is in contact with, -1 in free flight
-    settling="i8",  # SETTLES while the last bounces before a contact are summed, JAMMED between other balls, or 0
+    settling="i8",  # SETTLES while the last bounces before a contact are summed, JAMMED, LEANS on balls, or 0
     nx="f8", ny="f8",  # normal of that contact, to the ball
     tolerance="f8",  # [m] what counts as touching at that instant
-    vague="f8",  # [m/s] by how much another ball's push may miss its direction at that instant
     touched="i8",  # how many surfaces it touched when it was last resolved
     confined="i8",  # how often it has bounced since it last flew any way to speak of, see BOUNCES_WITHOUT_ROOM
-    strayed="f8", legs="i8",  # [m] the way that it has come, at most, in this leg; how many legs of ROOM_TO_MEET before
+    meets="i8", strayed="f8",  # hits of other balls without room, and the way [m] since: see ROOM_TO_MEET
     hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
     end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene
     sensor_after="f8", sensor_kind="i8", sensor_index="i8",
@@ -105,8 +102,44 @@ TOUCH = record(
     element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
 )  # fmt: skip
 PAIR = record(  # of two balls
-    hi="f8", lo="f8",  # when they hit each other while both keep to their flights
-    meets="i8", legs="i8",  # how often they have done so while these were all the legs of both
+    hi="f8",
+    lo="f8",  # when they hit each other while both keep to their flights
+    pressed="i8",  # 1 while they are pressed on each other
+)
+CONTACT = record(  # between a ball and a surface, or another ball, of a cluster that is resolved
+    one="i8",
+    other="i8",  # the ball that the normal points to; the other ball, or -1
+    nx="f8",
+    ny="f8",
+    ux="f8",
+    uy="f8",  # unit normal; velocity of the surface [m/s]
+    gap="f8",
+    curvature="f8",  # [m], and [1/m] as in TOUCH; of two balls that of one of twice the radius
+    least="f8",  # [m/s] the smallest rebound from what turns or stretches, otherwise 0
+    target="f8",
+    force="f8",  # what is projected onto n.x >= target, and the multiple of n that it takes
+    keeps="i8",
+    bears="f8",  # 1: n.x == target; the force per mass [m/s^2] that it takes to keep it closed
+    slot="i8",  # its row among the active ones, or -1
+    holds="i8",  # 1 of a surface whose friction stops what it presses
+    element="i8",
+    face="i8",
+    part="i8",
+)
+MEMBER = record(  # of a cluster that is resolved, by ball
+    inside="i8",  # 0: it is not of the cluster
+    fixed="i8",  # 1: nothing moves it
+    hits="i8",  # 1: it closes fast on a surface
+    x="f8",
+    y="f8",
+    x0="f8",
+    y0="f8",  # what is projected, and what it was before
+    leans="i8",
+    awake="i8",  # 1: pressed on another ball; such a one, or one that it moves with, is not at rest
+)
+ACTIVE = record(  # a row of the active set of a projection
+    contact="i8", product="f8", step="f8",
+    was="i8", force="f8",  # the contact in this row before the last one was added, and its force
 )  # fmt: skip
 COOLING = record(hi="f8", lo="f8")  # until when an element gives no kick
 ZONE = record(inside="i8", after="f8")  # whether the ball is where a part can reach, and when that changes
@@ -128,6 +161,9 @@ LEDGER = record(
 # Surfaces that one ball can touch at one instant; more than these are not seen.
 TOUCHES = 16
 
+# Contacts of a cluster, by the number of its balls: in the plane no ball touches more than six others.
+CONTACTS_OF_BALL = 8
+
 
 class Status(IntEnum):
     """How a ball is after a call."""
@@ -147,11 +183,12 @@ class EventKind(IntEnum):
     SENSOR = 3  # the ball's centre crossed a sensor
     PART_STOPS = 4  # a part came to a stop, turned back, or was blocked; ball -1
     CRUSHED = 5  # a closing part crushed the ball
+    ABSORBED = 6  # as a bounce, of balls that lie on each other: too slow to rebound
 
 
 # As plain numbers, for kernels.
 OK, BUDGET, CRUSHED, OUT = map(int, Status)
-BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = map(int, EventKind)
+BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH, ABSORBED = map(int, EventKind)
 
 
 # Kinds of standing obstacles.
@@ -163,11 +200,12 @@ LINE_SENSOR, CIRCLE_ENTRY, FIELD_BORDER = 0, 1, 2
 # Spans of arcs: 2 pi, up to pi, more.
 CLOSED, MINOR, MAJOR = 0, 1, 2
 
-# `contact` of a ball that is in flight, of one that rests, of one that slides on a part, and on a circle or arc.
-FLYING, HELD, RIDING, ON_CURVE = -1, -2, -3, -4
+# `contact` of a ball that is in flight, of one that rests, of one that slides on a part, on a circle or arc, and of one
+# that other balls bear, and no straight surface.
+FLYING, HELD, RIDING, ON_CURVE, ON_BALLS = -1, -2, -3, -4, -5
 
 # `settling`
-SETTLES, JAMMED = 1, 2
+SETTLES, JAMMED, LEANS = 1, 2, 3
 
 # Kinds of a ball's next event.
 NEXT_HIT, NEXT_PART, NEXT_SENSOR, NEXT_ZONE = 0, 1, 2, 3

@@ -11,10 +11,14 @@ import numpy as np
 
 from bounce_env.engine.compile.jit import Table
 from bounce_env.engine.memory.records import (
+    ACTIVE,
     BALL,
+    CONTACT,
+    CONTACTS_OF_BALL,
     COOLING,
     CURVE_SLIDE,
     ENDS,
+    MEMBER,
     MOTION,
     PAIR,
     TOUCH,
@@ -58,6 +62,10 @@ class State(NamedTuple):
     curve_slides: Table  # (worlds, balls) CURVE_SLIDE; None where no circle or arc can hold a ball
     pairs: Table  # (worlds, balls, balls) PAIR, by the later and the earlier ball; None for one ball, and points
     touches: Array  # (worlds, TOUCHES) TOUCH: what a ball touches at the instant that is resolved
+    members: Table  # (worlds, balls) MEMBER: the balls of the cluster that is resolved; these four None as `pairs`
+    contacts: Table  # (worlds, TOUCHES + CONTACTS_OF_BALL balls) CONTACT: between them and what they touch
+    actives: Table  # (worlds, 2 balls) ACTIVE: those that a projection has found to act
+    factors: Table  # (worlds, 2 balls, 2 balls) the Cholesky factor of their products
     disabled: Table  # (worlds, elements) int8; None where nothing can be switched off
     cooling: Table  # (worlds, elements) COOLING; None where no scene has a cooldown
     hits: Array  # (worlds, elements) int64: how often each was struck or crossed in the last step
@@ -86,6 +94,7 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
     parts, drag_limits, elements = tables["parts"], tables["drag_limits"], tables["elements"]
     # Without gravity only the inside of an arc holds a ball.
     curves = tables["arcs"] is not None or (tables["circles"] is not None and tables["gravity"] is not None)
+    meet = not point and balls > 1
 
     def sides(table: Table) -> Array | None:
         return None if table is None else np.zeros((worlds, balls, table.shape[1]), np.int8)
@@ -104,8 +113,12 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
         circle_sensor_sides=sides(tables["circle_sensors"]),
         field_edge_sides=sides(tables["field_edges"]),
         curve_slides=np.zeros((worlds, balls), CURVE_SLIDE) if curves else None,
-        pairs=None if point or balls == 1 else np.zeros((worlds, balls, balls), PAIR),
+        pairs=np.zeros((worlds, balls, balls), PAIR) if meet else None,
         touches=np.zeros((worlds, TOUCHES), TOUCH),
+        members=np.zeros((worlds, balls), MEMBER) if meet else None,
+        contacts=np.zeros((worlds, TOUCHES + CONTACTS_OF_BALL * balls), CONTACT) if meet else None,
+        actives=np.zeros((worlds, 2 * balls), ACTIVE) if meet else None,
+        factors=np.zeros((worlds, 2 * balls, 2 * balls)) if meet else None,
         disabled=np.zeros((worlds, elements.shape[1]), np.int8) if switches else None,
         cooling=np.zeros((worlds, elements.shape[1]), COOLING) if elements["cooldown"].any() else None,
         hits=np.zeros((worlds, elements.shape[1]), np.int64),

@@ -38,6 +38,7 @@ def resolve_cluster(state: State, w: int, k: int, ledger: Table) -> None:
             surfaces = _list_surfaces(state, w, i, i == k, surfaces, ledger)
             hits = hits or state.members[w, i].hits
     if state.parts is not None and ball.status == CRUSHED and not state.members[w, k].fixed:
+        _resolve_others(state, w, k)
         return
     count, closing = _list_pairs(state, w, surfaces)
     if hits or closing:
@@ -46,6 +47,14 @@ def resolve_cluster(state: State, w: int, k: int, ledger: Table) -> None:
     _hold(state, w, surfaces, ledger)
     _close_nowhere(state, w, count, ledger)
     go_on(state, w, count, ledger)
+
+
+@function
+def _resolve_others(state: State, w: int, k: int) -> None:
+    """Let the members be resolved anew once ball `k` has been crushed."""
+    for i in range(state.members.shape[1]):
+        if i != k and state.members[w, i].inside and state.balls[w, i].status != CRUSHED:
+            schedule_resolve(state.balls[w, i])
 
 
 @function

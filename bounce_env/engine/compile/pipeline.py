@@ -1,8 +1,9 @@
 """How a function is compiled that only other compiled functions call: to LLVM's language, and no further.
 
-Numba optimises every function with all that it calls, and makes machine code of it, before it does so again for what
-calls it. A kernel of a hundred functions that lie ten calls deep is thus optimised ten times over, for code that nobody
-runs. Here these steps are left to the kernel: it compiles several times faster, to the same instructions.
+Numba links every function with all that it calls, optimises that, and makes machine code of it, before it does so
+again for what calls it. A kernel of a hundred functions that lie ten calls deep is thus optimised ten times over, for
+code that nobody runs, and as many copies of it stay in memory. Here these steps are left to the kernel: it compiles
+several times faster, to the same instructions.
 """
 
 from typing import Any
@@ -15,24 +16,45 @@ from numba.core.typed_passes import NativeLowering
 
 
 class _Library(JITCodeLibrary):  # type: ignore[misc]
-    """Code that is linked into that of others, neither optimised nor run by itself."""
+    """Code of one function, neither linked with what it calls, nor optimised, nor run by itself."""
 
-    def _optimize_final_module(self) -> None:
-        pass
-
-    def _finalize_final_module(self) -> None:
+    def finalize(self) -> None:
+        """Make it fit for being linked into kernels."""
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == Linkage.external:
+                function.linkage = "linkonce_odr"
         self._finalize_dynamic_globals()
-        self._finalized = True
+        self._shared_module, self._finalized = self._final_module, True
 
 
 class _KernelLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """Code that is optimised with all that was linked into it, of which nothing else needs to be seen from outside."""
+    """Code that is optimised with all that it calls, of which nothing else needs to be seen from outside."""
+
+    _linking_libraries: list[Any]
+
+    def finalize(self) -> None:
+        """Link what is called, however deep, once; optimise all, and make machine code of it."""
+        found: list[Any] = []
+        for library in self._linking_libraries:
+            _find_callees_first(library, found)
+        # LLVM leaves out what nothing that is there calls, so that callers have to come first.
+        self._linking_libraries = found[::-1]
+        super().finalize()
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage == Linkage.linkonce_odr:
                 function.linkage = "internal"
         super()._optimize_final_module()
+
+
+def _find_callees_first(library: Any, found: list[Any]) -> None:
+    """Append to `found` the libraries that a library calls, then itself."""
+    if library in found:
+        return
+    for called in library._linking_libraries if isinstance(library, _Library) else ():
+        _find_callees_first(called, found)
+    found.append(library)
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)

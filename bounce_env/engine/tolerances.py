@@ -26,8 +26,10 @@ SEARCH_STEPS = 24
 # A ball that a search has brought nearer than this share of its reach to a turning part has come to it.
 SEARCH_ENDS = 1e-9
 
-# Bounces resolved at one instant before the ball is left to the next event (and so to the event budget).
-BOUNCES_AT_ONE_INSTANT = 32
+# Bounces of a ball in one event; more of them at that instant are left to the next one (and so to the event budget).
+# In a corner there are as many as its angle allows and these, but never more than so many besides.
+BOUNCES_AT_ONE_EVENT = 32
+BOUNCES_AT_ONE_INSTANT = 4096
 
 # A ball that has hit others so often (and 4 times more for each two balls), while it has not come further than this
 # share of the scene's extent, has no room: to and fro in a gap of less than 1e-9 of it, or thrown at each other again

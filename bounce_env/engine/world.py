@@ -92,7 +92,7 @@ class World:
         | `time` | seconds since reset |
         | `ball` | index of the ball; -1 where a part stops |
         | `element` | index in `scene.elements`; of another ball len(scene.elements) + its index |
-        | `kind` | an `EventKind`: bounce 0, contact begins 1, ends 2, sensor 3, part stops 4, crushed 5, absorbed 6 |
+        | `kind` | EventKind: bounce 0, contact begins 1, ends 2, sensor 3, part stop 4, crush 5, absorbed 6, corner 7 |
         | `x`, `y` | centre of the ball, of a part that stops a point on it [m] |
         | `nx`, `ny` | unit normal from the element to the ball; at a sensor, to where the ball came from |
         | `vx0`, `vy0`, `vx1`, `vy1` | velocity before and after [m/s] |

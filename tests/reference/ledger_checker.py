@@ -19,7 +19,17 @@ from bounce_env.scene import Arc, Bumper, Scene, Wall
 from tests.reference.ledger_drive import Command
 from tests.reference.ledger_gaps import least_distances
 from tests.reference.ledger_pairs import PairChecks
-from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, CRUSH, PART_STOPS, Row, apart
+from tests.reference.ledger_row import (
+    BOUNCE,
+    CONTACT_BEGINS,
+    CONTACT_ENDS,
+    CORNER_BOUNCE,
+    CROSSING,
+    CRUSH,
+    PART_STOPS,
+    Row,
+    apart,
+)
 from tests.reference.ledger_sensors import Whole
 from tests.reference.ledger_setting import EXACT, STANDING, TOLERANCE, Setting
 from tests.reference.ledger_touch import ULP, Ledger
@@ -118,7 +128,7 @@ def _malformed(scene: Scene, ledger: Ledger, ends: Sequence[End]) -> Iterator[st
     known = {
         "element": (ledger["element"] >= 0) & ((other < 0) | meets),
         "ball": np.where(kind == PART_STOPS, ball == -1, (ball >= 0) & (ball < len(ends))),
-        "kind": (kind >= BOUNCE) & (kind <= CRUSH),
+        "kind": ((kind >= BOUNCE) & (kind <= CRUSH)) | (kind == CORNER_BOUNCE),
     }
     for name, right in known.items():
         for k in np.flatnonzero(~right):
@@ -174,6 +184,8 @@ class _Check(PairChecks):
                 self.crossing(index, row)
             case 5:
                 self.crushed(index, row)
+            case 7:
+                self.corner_bounce(index, row)
 
     # ---- motions
 
@@ -193,7 +205,9 @@ class _Check(PairChecks):
             acted = walk.act()
             wrong = self.differs(way.state, pull, walk.state, seen)
             switched_off = (
-                kind in (BOUNCE, CONTACT_BEGINS) and element < len(walk.enabled) and not walk.enabled[element]
+                kind in (BOUNCE, CORNER_BOUNCE, CONTACT_BEGINS)
+                and element < len(walk.enabled)
+                and not walk.enabled[element]
             )
             if acted and (wrong or switched_off):  # it was before the commands of this instant
                 walk.back(here)

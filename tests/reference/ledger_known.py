@@ -16,13 +16,14 @@ from bounce_env.scene import Field, Sensor
 from tests.reference.ledger_contact import PRESSING, is_carried, is_over
 from tests.reference.ledger_law import Surface, is_friction, least_rebound
 from tests.reference.ledger_motion import Turning
-from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH, Row, apart
+from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CORNER_BOUNCE, CRUSH, Row, apart
 from tests.reference.ledger_sensors import Report
 from tests.reference.ledger_setting import EXACT, STANDING, TOLERANCE, Setting
 from tests.reference.ledger_touch import ULP, Bearing, Ledger, Own, Touches, Vector
 from tests.reference.ledger_walk import Bearer, Mode, State, Walk
 
-BOUNCES_AT_ONE_INSTANT = 32  # after so many the ball is stopped by what it touches
+BOUNCES_AT_ONE_INSTANT = 32  # after so many, or more in a corner, the ball is stopped by what it touches
+ENDS_INSTANT = (BOUNCE, CORNER_BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH)
 
 
 class Way(NamedTuple):
@@ -57,6 +58,7 @@ class Known:
         self.rolls_on = -1  # the element off which the ball hopped in its last bounce
         self.hopped = -math.inf  # [s] when it did
         self.jammed = -math.inf  # [s] when other balls last stopped it
+        self.shared = -1  # the number of the row that began a bounce from two elements at once
         self.is_crushed, self.crushed_at = False, -1  # the number of the row that says so
         self.place = start[1:3]
         self.known: dict[int, tuple[float, float]] = {}  # normals of what was touched at this place
@@ -204,7 +206,7 @@ class Known:
 
     def is_last(self, index: int) -> bool:
         """Whether nothing more happens to the ball at this instant."""
-        later = (r for r in self.rows[index + 1 :] if r.kind in (BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH))
+        later = (r for r in self.rows[index + 1 :] if r.kind in ENDS_INSTANT)
         return next((r.time for r in later), math.inf) > self.rows[index].time
 
     def closes_no_more(self, index: int, row: Row) -> None:

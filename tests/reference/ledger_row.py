@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH = range(6)
+CORNER_BOUNCE = 7
 
 
 class Row(NamedTuple):

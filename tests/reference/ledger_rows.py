@@ -22,7 +22,7 @@ from tests.reference.ledger_contact import (
 from tests.reference.ledger_known import Known, Way
 from tests.reference.ledger_law import HOP_ULPS, Surface, outcomes, split
 from tests.reference.ledger_motion import Core
-from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, Row, apart
+from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CORNER_BOUNCE, Row, apart
 from tests.reference.ledger_sensors import Report, curve_of
 from tests.reference.ledger_setting import EXACT, TOLERANCE
 from tests.reference.ledger_shapes import direction
@@ -66,6 +66,33 @@ class RowChecks(Known):
                 self.say(index, f"{words}, nor is it a hop to one of {hops}")
                 return
         self.bounces_by_law(index, row, own, scale)
+
+    def corner_bounce(self, index: int, row: Row) -> None:
+        """Two rows that stand side by side: each pushes along its normal, both together turn the velocity round."""
+        self.remember(row)
+        own = self.stands_on(index, row)
+        self.goes_on(row)
+        if own is None:
+            return
+        scale = self.blur(row)
+        push = (row.vx1 - row.vx0) * row.nx + (row.vy1 - row.vy0) * row.ny
+        if push < -scale or apart((row.vx0 + push * row.nx, row.vy0 + push * row.ny), row.after) > scale:
+            self.say(index, f"{row.before} to {row.after} is no push along the normal")
+        mates = [self.rows[k] for k in (index - 1, index + 1) if 0 <= k < len(self.rows)]
+        mates = [mate for mate in mates if (mate.kind, mate.time) == (CORNER_BOUNCE, row.time)]
+        if not mates:
+            self.say(index, "nothing else shares in this bounce")
+        elif mates[0] == self.rows[index - 1] and self.shared == index - 1:
+            first = mates[0]
+            b = self.scene.ball.b * self.scene.elements[row.element].b
+            closing = [-(first.vx0 * r.nx + first.vy0 * r.ny) for r in (first, row)]
+            if min(closing) <= 0.0 or abs(closing[0] - closing[1]) > scale:
+                self.say(index, f"the two are closed on at {closing[0]:.9g} and {closing[1]:.9g} m/s")
+            if all(apart((-e * first.vx0, -e * first.vy0), row.after) > scale for e in (b, 0.0)):
+                self.say(index, f"the bounce turns {first.before} into {row.after}, not into {-b} times it")
+            self.closes_no_more(index, row)
+        else:
+            self.shared = index
 
     def bounces_by_law(self, index: int, row: Row, own: Own, scale: float) -> None:
         """The velocity after must be what the law makes of the one before, or what a corner leaves of it."""

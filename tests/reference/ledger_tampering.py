@@ -36,7 +36,7 @@ def changes(scene: Scene, ledger: Rows, balls: int = 1) -> Iterator[tuple[str, R
             for sign in (1.0, -1.0) if SOAK else (next(turn),):
                 yield f"row {k}: {name} {sign * step:+.3g}", changed(ledger, k, name, row[name] + sign * step)
         others = range(-1, count + 1) if SOAK else {row["element"] + 1, row["element"] - 1}
-        for name, values in (("element", others), ("kind", range(6)), ("ball", range(-1, max(balls, 2)))):
+        for name, values in (("element", others), ("kind", (*range(6), 7)), ("ball", range(-1, max(balls, 2)))):
             for value in values:
                 if value != row[name]:
                     yield f"row {k}: {name} {value}", changed(ledger, k, name, value)

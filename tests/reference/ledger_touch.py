@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from tests.reference.ledger_motion import PartRun
 from tests.reference.ledger_paths import Floats
-from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH
+from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CORNER_BOUNCE, CRUSH
 from tests.reference.ledger_shapes import Feature, Line, Round, Shapes
 from tests.reference.ledger_walk import State
 
@@ -72,7 +72,9 @@ class Touches:
     ):
         """`started`: times at which the ball is given a velocity, so that this does not tell from where it came."""
         self._slack = TOUCHING * extent
-        self._rows = np.flatnonzero(np.isin(ledger["kind"], (BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH)))
+        self._rows = np.flatnonzero(
+            np.isin(ledger["kind"], (BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CRUSH, CORNER_BOUNCE))
+        )
         table = ledger[self._rows]
         count = len(table)
         self._place = {int(row): k for k, row in enumerate(self._rows)}

@@ -28,7 +28,7 @@ Step: TypeAlias = float | tuple[Any, ...]
 Watch: TypeAlias = Callable[[World, set[str]], None]
 
 ULP = 2.0**-52
-KINDS = ("bounce", "begin", "end", "cross", "stop", "crush")
+KINDS = ("bounce", "begin", "end", "cross", "stop", "crush", "absorbed", "bounce")  # two from a corner are bounces
 STATUS = {OK: "OK", BUDGET: "BUDGET", CRUSHED: "CRUSHED", OUT: "OUT"}
 
 

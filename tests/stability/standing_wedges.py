@@ -45,17 +45,18 @@ def _v(left: int, right: int, b: float, r: float, seconds: float) -> Case:
 def _v_slides(left: int, r: float) -> Case:
     """Obtuse and b = 0: the ball slides up one wall, back, and up the other; each passage leaves cos(180 - 2 left).
 
-    The first hit, v0 downwards, leaves v0 cos(left) on the first wall; a slide with v lasts 2 v / (g cos(left)).
+    It begins at the bottom with v up one wall; a slide with v lasts 2 v / (g cos(left)).
     """
-    a = math.radians(left)
+    a, v = math.radians(left), 1.5
     x, y = v_bottom(a, a, r)
-    share, first = -math.cos(2 * a), math.sqrt(2 * 0.25 / G)
-    rest = first + 2 * first * share / (1 - share)
+    share = -math.cos(2 * a)
+    rest = 2 * v / (G * math.cos(a)) / (1 - share)
     return Case(
         name=f"V of {left} + {left} degrees, b=0: slides from side to side, r={r}",
         why="law at each passage and constant acceleration in between: a geometric series of slides",
         scene=Scene(gravity=(0, -G), ball=Ball(radius=r, b=0), elements=v_walls(a, a)),
-        position=(x, y + 0.25),
+        position=(x, y),
+        velocity=(-v * math.sin(a), v * math.cos(a)),
         script=(rest + 1.0,),
         rows=SETTLES,
         expect=(last_time(rest, left_out(G, G * math.cos(a), share)), *resting(x, y, NEAR + CORNER / math.cos(a))),

@@ -1,7 +1,8 @@
 """Small hops: how a ball goes on along what it is pressed on, where there is no closed form for a contact."""
 
 from bounce_env.engine.compile.jit import Table, function, where
-from bounce_env.engine.contact.bounces import count_bounce, fastest_closing
+from bounce_env.engine.contact.bounces import fastest_closing
+from bounce_env.engine.contact.hits import count_bounce
 from bounce_env.engine.contact.restitution import (
     closing_speed,
     normal_load,

@@ -7,8 +7,9 @@ Ever smaller bounces that lead to a contact with a straight surface are summed i
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function
-from bounce_env.engine.contact.bounces import bounce_from_all, count_bounce, surface_of, take_soft
+from bounce_env.engine.contact.bounces import GOES_ON, bounce_from_all, take_soft
 from bounce_env.engine.contact.cluster import resolve_cluster
+from bounce_env.engine.contact.hits import count_bounce, surface_of
 from bounce_env.engine.contact.hops import hop_on
 from bounce_env.engine.contact.resting import bear, find_contact, is_slow
 from bounce_env.engine.contact.restitution import (
@@ -24,7 +25,7 @@ from bounce_env.engine.contact.restitution import (
 from bounce_env.engine.contact.sides import update_crossing_sides
 from bounce_env.engine.contact.touching import collect_touches, keep_outside_touched
 from bounce_env.engine.detect.pairs import is_pressed_by_balls, plan_pairs
-from bounce_env.engine.detect.schedule import schedule_rest, schedule_standing
+from bounce_env.engine.detect.schedule import schedule_resolve, schedule_rest, schedule_standing
 from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import (
     CONTACT_BEGINS,
@@ -49,6 +50,8 @@ from bounce_env.engine.tolerances import (
     ULPS_OF_LENGTH,
     WEIGHTLESS,
 )
+
+NOT_PLANNED = -2.0
 
 
 @function
@@ -81,7 +84,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
         if settling == SETTLES:
             contact, support = FLYING, -1  # that contact had not begun yet
         duration = _resolve_bounces(state, w, k, contact, support, at_once, ledger)
-        if ball.status == CRUSHED:
+        if duration == NOT_PLANNED:
             return
     if duration >= 0.0:
         ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
@@ -134,14 +137,17 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
     """Bounce a ball from all that it touches, let it fly, slide or rest, and search what stands in its way.
 
     contact, support: those that it came with.
-    Returns after how long [s] it is to be looked at again because its last bounces are summed up to then, otherwise -1.
+    Returns after how long [s] it is to be looked at again because its last bounces are summed up to then, otherwise -1;
+    NOT_PLANNED where it is crushed, or goes on bouncing at this instant.
     """
     ball, bounces = state.balls[w, k], state.worlds[w].bounces
     if at_once and state.gravity is not None:
         take_soft(ball, state.touches, w, state.scenes[state.worlds[w].scene].extent)
     single, corner, vx0, vy0 = bounce_from_all(state, w, k, ledger)
-    if ball.status == CRUSHED:
-        return -1.0
+    if corner == GOES_ON:
+        schedule_resolve(ball)
+    if corner == GOES_ON or ball.status == CRUSHED:
+        return NOT_PLANNED
     _resolve_release(ball)
     if state.gravity is not None or state.arcs is not None:
         # Told at once of a hit of something that it does not close on, a ball that rides on a part, or slides into one,

@@ -22,7 +22,7 @@ from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of
 from bounce_env.engine.motion.instant import before, since
 from bounce_env.engine.motion.parts import part_offset_at, part_stop_instant
-from bounce_env.engine.tolerances import BOUNCES_AT_ONE_INSTANT, ULPS_OF_SPEED, UNSURE
+from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED, UNSURE
 
 # How a run of the loop ends.
 DONE, BUDGET_SPENT, LEDGER_FULL = 0, 1, 2
@@ -32,7 +32,7 @@ NOTHING, OF_BALL, OF_PAIR, OF_PART = -1, 0, 1, 2
 
 # Of one ball: bounces, the end of a contact and the beginning of another, a small hop and what is in its way, a crush,
 # and the stop of a wall's two ends.
-ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_INSTANT + 7
+ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_EVENT + 7
 
 
 @function

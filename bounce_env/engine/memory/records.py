@@ -184,11 +184,12 @@ class EventKind(IntEnum):
     PART_STOPS = 4  # a part came to a stop, turned back, or was blocked; ball -1
     CRUSHED = 5  # a closing part crushed the ball
     ABSORBED = 6  # as a bounce, of balls that lie on each other: too slow to rebound
+    CORNER_BOUNCE = 7  # an element's share in a bounce from several of them at once
 
 
 # As plain numbers, for kernels.
 OK, BUDGET, CRUSHED, OUT = map(int, Status)
-BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH, ABSORBED = map(int, EventKind)
+BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH, ABSORBED, CORNER_BOUNCE = map(int, EventKind)
 
 
 # Kinds of standing obstacles.

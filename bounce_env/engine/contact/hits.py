@@ -1,0 +1,125 @@
+"""A hit of one surface: the bounce law, what gravity and a kick make of it, and its row in the ledger."""
+
+from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.contact.restitution import (
+    along_speed,
+    bounce,
+    capped,
+    is_soft,
+    normal_load,
+    rolling_speed,
+)
+from bounce_env.engine.memory.ledger import Surface, append_contact, count_hit
+from bounce_env.engine.memory.records import BOUNCE, CORNER_BOUNCE
+from bounce_env.engine.memory.state import State
+from bounce_env.engine.motion.instant import before, later
+
+
+@function
+def bounce_off(state: State, w: int, k: int, i: int, closing: float, noise: float, ledger: Table) -> bool:
+    """Bounce from one touched surface; returns whether it gave a kick. A speed up to `noise` [m/s] left is none."""
+    ball, world, touch = state.balls[w, k], state.worlds[w], state.touches[w, i]
+    head, material = state.scenes[world.scene], state.elements[world.scene, touch.element]
+    rebound, f = rebound_from(state, w, k, i, closing)
+    kicked = material.kick > 0.0 and closing > material.kick_threshold
+    if kicked and _is_kick_ready(state, w, k, touch.element, material.cooldown):
+        rebound += material.kick
+    else:
+        kicked = False
+    vx0, vy0 = ball.vx, ball.vy
+    vx, vy = bounce(vx0, vy0, touch.nx, touch.ny, touch.ux, touch.uy, rebound, f)
+    if abs(vx) + abs(vy) <= noise:
+        # All that the bounces at this instant have left is rounding, and would go to and fro in a corner.
+        vx, vy = 0.0, 0.0
+    ball.vx, ball.vy, over = capped(vx, vy, touch.nx, touch.ny, touch.ux, touch.uy, head.max_speed)
+    world.speed_capped += over
+    count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    return kicked
+
+
+@function
+def rebound_from(state: State, w: int, k: int, i: int, closing: float) -> tuple[float, float]:
+    """Return how fast [m/s] a ball rebounds from touched surface `i`, without a kick, and the friction factor."""
+    ball, scene, touch = state.balls[w, k], state.worlds[w].scene, state.touches[w, i]
+    head, material = state.scenes[scene], state.elements[scene, touch.element]
+    rebound, f = material.b * closing, material.f
+    if touch.moves and closing <= touch.least:
+        rebound, f = max(rebound, touch.least), (1.0 if head.rest_speed > 0.0 and f > 0.0 else f)
+    elif state.gravity is not None or touch.curvature < 0.0:
+        rebound, f = _softened_bounce(ball, touch, head, material, closing, rebound, f)
+    return rebound, f
+
+
+@function
+def _softened_bounce(
+    ball: Record, touch: Record, head: Record, material: Record, closing: float, rebound: float, f: float
+) -> tuple[float, float]:
+    """Rebound [m/s] and friction where the ball is pressed on the surface: absorbed, or on a wall too little to see."""
+    press = normal_load(ball, touch)
+    if press == 0.0:
+        return rebound, f
+    pressed_by_gravity = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
+    if pressed_by_gravity and closing < head.rest_speed:
+        return 0.0, (1.0 if f > 0.0 else 0.0)
+    if touch.curvature == 0.0:
+        # Hops that lose nothing have no end, and these show in no place of the ball: it slides.
+        ends = material.b == 1.0 and is_soft(closing, press, head.extent)
+        return (0.0 if ends else rebound), f
+    if touch.part >= 0:
+        return _rolling_bounce(ball, touch, head, material, press, closing, rebound, f)
+    return rebound, f
+
+
+@function
+def _rolling_bounce(
+    ball: Record, touch: Record, head: Record, material: Record, press: float, closing: float, rebound: float, f: float
+) -> tuple[float, float]:
+    """Rebound [m/s] and friction on the round end of a part, on which the ball rolls in small hops."""
+    smallest = rolling_speed(ball, touch, press, head.extent)
+    if closing <= 1.5 * smallest and head.rest_speed > 0.0:
+        return 0.0, (1.0 if f > 0.0 else 0.0)
+    holds = f == 0.0 or (f < 1.0 and head.rest_speed == 0.0)
+    if material.b >= 1.0 or rebound >= smallest or (rebound == 0.0 and holds):
+        return rebound, f
+    if is_soft(closing, press, head.extent):
+        return 0.0, f
+    if material.b < 1.0 and abs(along_speed(ball, touch)) <= 2.0 * smallest:
+        # Slow on the curve: let the bounces die away, so that a ball between several surfaces comes to touch them.
+        smallest = min(smallest, 0.5 * closing)
+    return max(rebound, smallest), f
+
+
+@where("cooling", otherwise=True)
+def _is_kick_ready(state: State, w: int, k: int, element: int, cooldown: float) -> bool:
+    """Return whether an element gives a kick now; if so it begins to cool down."""
+    ball, cool = state.balls[w, k], state.cooling[w, element]
+    if before(ball.hi, ball.lo, cool.hi, cool.lo):
+        return False
+    if cooldown > 0.0:
+        cool.hi, cool.lo = later(ball.hi, ball.lo, cooldown)
+    return True
+
+
+@function
+def count_bounce(state: State, w: int, k: int, touch: Record, vx0: float, vy0: float, ledger: Table) -> None:
+    """Count a bounce from a touched surface, and log it."""
+    _count_as(state, w, k, touch, BOUNCE, vx0, vy0, ledger)
+
+
+@function
+def count_corner(state: State, w: int, k: int, touch: Record, vx0: float, vy0: float, ledger: Table) -> None:
+    """Count a touched surface's share in a bounce from several at once, and log it."""
+    _count_as(state, w, k, touch, CORNER_BOUNCE, vx0, vy0, ledger)
+
+
+@function
+def _count_as(state: State, w: int, k: int, touch: Record, kind: int, vx0: float, vy0: float, ledger: Table) -> None:
+    state.worlds[w].bounces += 1
+    count_hit(state, w, touch.element)
+    append_contact(ledger, state.worlds[w], state.balls[w, k], k, kind, surface_of(touch), vx0, vy0)
+
+
+@function
+def surface_of(touch: Record) -> Surface:
+    """Return what the ledger tells of a touched surface."""
+    return Surface(touch.element, touch.nx, touch.ny, touch.ux, touch.uy)

@@ -7,6 +7,7 @@ closed form under the tangential part of its acceleration; on a circle or arc th
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.contact.carrying import carry, runs_off_end
 from bounce_env.engine.contact.restitution import (
     along_speed,
     closing_speed,
@@ -42,10 +43,13 @@ def find_contact(state: State, w: int, k: int) -> int:
         touch = state.touches[w, i]
         if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or not _is_pressed(ball, touch):
             continue
+        f = state.elements[scene, touch.element].f
+        holds = f == 0.0 or (f < 1.0 and head.rest_speed == 0.0)
+        if carry(state, w, k, i, holds):
+            return i
         if not _lets_hold(ball, state.touches, w, i):
             continue
-        f = state.elements[scene, touch.element].f
-        if f == 0.0 or (f < 1.0 and head.rest_speed == 0.0):
+        if holds:
             return _stop_by_friction(ball, touch, i)
         if _is_balanced_on_curve(ball, touch):
             return _hold(ball, touch, i)
@@ -166,7 +170,7 @@ def _slides_on(state: State, w: int, k: int, i: int) -> bool:
     ux, uy = touch.ny, -touch.nx
     rate = (ball.vx - touch.ux) * ux + (ball.vy - touch.uy) * uy
     pull = ball.gx * ux + ball.gy * uy
-    if _runs_off_end(ball, touch):
+    if runs_off_end(ball, touch):
         return False
     turn = touch.curvature * rate * rate
     ax, ay = pull * ux - turn * touch.nx, pull * uy - turn * touch.ny
@@ -183,23 +187,9 @@ def _slides_on(state: State, w: int, k: int, i: int) -> bool:
 
 
 @function
-def _runs_off_end(ball: Record, touch: Record) -> bool:
-    """Return whether a ball at the end of a surface moves off it."""
-    if touch.along < touch.length - ball.tolerance and touch.along > ball.tolerance:
-        return False
-    rate, pull = -along_speed(ball, touch), ball.gx * touch.ny - ball.gy * touch.nx
-    lean = rate if abs(rate) > slow_speed(ball, touch) else 0.0
-    if lean == 0.0 and abs(pull) > PRESSING * (abs(ball.gx) + abs(ball.gy)):
-        lean = pull
-    return (touch.along >= touch.length - ball.tolerance and lean > 0.0) or (
-        touch.along <= ball.tolerance and lean < 0.0
-    )
-
-
-@function
 def _opens_beside(ball: Record, touch: Record, other: Record, ax: float, ay: float) -> bool:
     """Return whether the gap to another surface does not close while the ball slides, at (ax, ay), on one."""
-    if closing_speed(ball, other) < -slow_speed(ball, other) or _runs_off_end(ball, other):
+    if closing_speed(ball, other) < -slow_speed(ball, other) or runs_off_end(ball, other):
         return True
     along = along_speed(ball, other)
     noise = PRESSING * (abs(ball.gx) + abs(ball.gy)) + load_noise(ball, touch) + load_noise(ball, other)

@@ -234,6 +234,8 @@ def way_off_part(state: State, w: int, k: int, flight: Flight) -> float:
     rx, ry = ball.x - core.x, ball.y - core.y
     sx, sy = part_surface_velocity(part, core, rx, ry)
     along, rate = rx * core.ux + ry * core.uy, (ball.vx - sx) * core.ux + (ball.vy - sy) * core.uy
+    if not core.back <= along <= core.front and ball.contact >= 0:
+        return math.inf  # at one point of its round end, pushed along a wall
     pull, against = (
         flight_acceleration_along(flight, core.ux, core.uy),
         flight_acceleration_along(flight, -core.ux, -core.uy),

@@ -99,7 +99,7 @@ def _schedule_standing_in_flight(state: State, w: int, k: int) -> None:
     if joint < after:
         after, met = joint, True
         ball.hit_kind, ball.hit_index = ON_JOINT, wall
-    if ball.contact == RIDING:
+    if ball.contact == RIDING or (ball.contact >= 0 and ball.rides >= 0):
         off = way_off_part(state, w, k, flight)
         if off < after:
             after, met = off, True

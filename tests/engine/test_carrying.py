@@ -1,0 +1,99 @@
+"""A ball that a wall pushes along a floor: one uniform motion, not a row of bounces."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bounce_env import Ball, EventKind, Paddle, Scene, Wall, World
+
+RADIUS, G = 0.02, 9.81
+PUSH = (0.3, 0.0)
+
+
+def world_with_wall(lean: float, slope: float, f: float, b: float = 0.0, speed: float = PUSH[0]) -> World:
+    """A floor at `slope` [rad], and a wall that leans over it by `lean` [rad] and comes along it at `speed` [m/s]."""
+    top, bottom = along(slope, 0.6 * math.sin(lean), 0.6), along(slope, -0.06 * math.sin(lean), -0.06)
+    floor = Wall(along(slope, -3.0, 0.0), along(slope, 3.0, 0.0), b=0.5, f=f, name="floor")
+    wall = Wall(top, bottom, b=b, f=f, draggable=True, name="wall", reach=((-5, -5), (5, 5)))
+    world = World(Scene(ball=Ball(radius=RADIUS), gravity=(0, -G), elements=(floor, wall)))
+    world.reset(position=along(slope, 0.25, RADIUS), velocity=(0.0, 0.0))
+    command(world, slope, speed)
+    return world
+
+
+def command(world: World, slope: float, speed: float) -> None:
+    velocity = along(slope, speed, 0.0)
+    world.command("wall", (velocity, velocity))
+
+
+def along(slope: float, x: float, y: float) -> tuple[float, float]:
+    c, s = math.cos(slope), math.sin(slope)
+    return x * c - y * s, x * s + y * c
+
+
+@pytest.mark.parametrize("f", [0.0, 0.9, 1.0])
+@pytest.mark.parametrize(("lean", "slope"), [(0.12, 0.1), (0.0, 0.1), (-0.12, 0.1), (0.5, 0.0), (0.0, 0.0)])
+def test_a_pushed_ball_moves_as_fast_as_the_wall_comes(lean, slope, f):
+    world = world_with_wall(lean, slope, f)
+    world.advance(2.0)
+    if f == 1.0 and slope == 0.0 and lean != 0.0:  # thrown ahead at the first hit, on a floor that takes nothing
+        assert math.hypot(*world.velocity[0]) > PUSH[0]
+        return
+    before, later = world.position[0].copy(), world.advance(1.0, ledger=True)
+    np.testing.assert_allclose(world.velocity[0], along(slope, *PUSH), rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose(world.position[0] - before, along(slope, *PUSH), rtol=0.0, atol=1e-14)
+    assert len(later) == 0
+
+
+def test_time_in_pieces_and_snapshots_change_no_bit():
+    whole, pieces = (world_with_wall(0.12, 0.1, 1.0, b=0.5) for _ in range(2))
+    whole.advance(4.0)
+    for _ in range(256):
+        pieces.advance(4.0 / 256)
+        pieces.restore(pieces.snapshot())
+    assert pieces.position.tobytes() == whole.position.tobytes()
+    assert pieces.velocity.tobytes() == whole.velocity.tobytes()
+
+
+@pytest.mark.parametrize("f", [0.9, 1.0])
+def test_when_the_push_ends_the_ball_slides_on_or_the_floor_holds_it(f):
+    world = world_with_wall(0.12, 0.1, f)
+    world.advance(2.0)
+    place = world.position[0].copy()
+    command(world, 0.1, 0.0)
+    rows = world.advance(0.1, ledger=True)
+    way = 0.0 if f < 1.0 else PUSH[0] * 0.1 - 0.5 * G * math.sin(0.1) * 0.1**2
+    np.testing.assert_allclose(world.position[0], place + along(0.1, way, 0.0), rtol=0.0, atol=1e-14)
+    assert len(rows) <= 4
+
+
+def test_a_ball_is_pushed_off_the_end_of_the_floor():
+    world = world_with_wall(0.0, 0.0, 0.9)
+    world.advance(12.0)
+    assert world.position[0][0] > 3.0 + RADIUS
+    assert world.position[0][1] < -1.0
+
+
+@pytest.mark.parametrize("half", [0.0, 0.1])
+def test_the_round_end_of_a_paddle_pushes_a_ball_along_the_floor(half):
+    """It stays at one point of the end, which comes along the floor."""
+    floor = Wall((-3, 0), (3, 0), f=0.9, b=0.5, name="floor")
+    paddle = Paddle(
+        rail_start=(-1, 0.05), rail_end=(1, 0.05), half_width=half, radius=0.03, max_speed=0.5, b=0.0, name="paddle"
+    )
+    world = World(Scene(ball=Ball(radius=RADIUS), gravity=(0, -G), max_speed=20.0, elements=(floor, paddle)))
+    world.reset(position=(half + 0.3, RADIUS), velocity=(0.0, 0.0))
+    world.command("paddle", 0.5)
+    world.advance(1.2)
+    rows = world.advance(0.5, ledger=True)
+    assert len(rows) == 0
+    np.testing.assert_allclose(world.velocity[0], (0.5, 0.0), rtol=0.0, atol=1e-12)
+    core = world.cores[0][2:]
+    assert abs(math.hypot(*(world.position[0] - core)) - 0.05) < 1e-13
+
+
+def test_nothing_is_absorbed_before_the_wall_has_come():
+    rows = world_with_wall(0.0, 0.0, 0.9, b=0.5).advance(3.0, ledger=True)
+    kinds = [EventKind(row["kind"]).name for row in rows if row["time"] > 0.0]
+    assert kinds == ["BOUNCE", "CONTACT_ENDS", "CONTACT_BEGINS"]

@@ -72,11 +72,10 @@ BOUNCES_WITHOUT_ROOM = 1024
 BOUNCES_BEFORE_STANDING = 2048
 BOUNCES_AFTER_STANDING = 64
 
-# A ball that a closing part has struck and something opposite to it has thrown back so often, within this share of the
-# scene's extent, is crushed: 6e-5 of it, a tenth of a millimetre on a table.
+# A ball that a part strikes is crushed where what is nearer to it than this share of the scene's extent leaves it no
+# velocity to get away: 6e-5 of it, a tenth of a millimetre on a table.
 CLEARANCE = 2.0**-14
-SQUEEZES = 8
-OPPOSED = 0.5  # how far normals must oppose each other for that: by 120 degrees
+FASTEST_ESCAPE = 64.0  # no ball is squeezed out faster than so many times the fastest surface, or than the cap
 
 # Normals that carry a resting ball may miss the direction of gravity by this much.
 ALIGNED = 1e-9

@@ -17,7 +17,7 @@ PRESSING = 2.0**-40  # share of the acceleration: pressed less than this, fricti
 ALIGNED = 1e-9  # by how much the normals that carry a ball may miss the direction of what they carry
 CORNER = 64.0  # times as high as a hop that is none: so much is none between several surfaces
 SWING, BALANCE = 1e-3, 1e-4  # of sqrt(pull rho): the speeds at which a ball rests in a hollow, and on top of a curve
-OPPOSED = 0.5  # two surfaces whose normals oppose each other more than so (by 120 degrees) let nothing out
+FASTEST_ESCAPE = 64.0  # no ball is squeezed out faster than so many times the fastest surface
 SLOW = 4e-14  # share of the speed below which nothing closes or leaves
 
 
@@ -123,7 +123,7 @@ def _squeezed_out(bearings: Sequence[Bearing]) -> Iterator[Vector]:
     """The velocities at which a ball keeps just ahead of two surfaces."""
     for one, other in combinations(bearings, 2):
         turn = one.nx * other.ny - one.ny * other.nx
-        if one.nx * other.nx + one.ny * other.ny >= -OPPOSED and abs(turn) > ALIGNED:
+        if abs(turn) > ALIGNED:
             a, b = one.ux * one.nx + one.uy * one.ny, other.ux * other.nx + other.uy * other.ny
             yield (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
 
@@ -147,9 +147,38 @@ def after_contact(
     stands = rests or (is_standing(v, a, rules) and is_carried(a, bearings))
     if stands:
         yield bearing.ux, bearing.uy
+    if bearing.straight and pressed:
+        for other in bearings:
+            if is_carrier(other):
+                yield from _squeezed_out([bearing, other])
     # Where something else moves into the ball, friction does not hold it; nor does what it only nearly touches.
     if pressed and bearing.straight and (not rests or any(b.ux or b.uy for b in bearings)):
         yield along(bearing, v)
+
+
+def is_carrier(bearing: Bearing) -> bool:
+    """Whether a surface translates: it may carry a ball along another one."""
+    return not bearing.moves and bool(bearing.ux or bearing.uy)
+
+
+def is_pushed_along(bearing: Bearing, bearings: Sequence[Bearing], v: Vector) -> bool:
+    """Whether a ball that has this velocity moves along a surface just as fast as another one comes."""
+    for other in bearings:
+        if is_carrier(other) and other.element != bearing.element and not (bearing.ux or bearing.uy):
+            for ux, uy in _squeezed_out([bearing, other]):
+                if math.hypot(v[0] - ux, v[1] - uy) <= slow(v):
+                    return True
+    return False
+
+
+def gets_away(bearings: Sequence[Bearing], max_speed: float) -> bool:
+    """Whether some velocity that the ball may have closes on none of these surfaces."""
+    fastest = min(max_speed, FASTEST_ESCAPE * max((math.hypot(b.ux, b.uy) for b in bearings), default=0.0))
+    ways = [(0.0, 0.0), *_squeezed_out(bearings)]
+    for b in bearings:
+        drive = b.ux * b.nx + b.uy * b.ny
+        ways.append((drive * b.nx, drive * b.ny))
+    return any(math.hypot(*v) <= fastest and _closes_on_none(bearings, v, v) for v in ways)
 
 
 def hop(surface: Surface, rules: Rules, v: Vector) -> Vector | None:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bounce_env.scene import Field, Sensor
-from tests.reference.ledger_contact import PRESSING, is_carried, is_over
+from tests.reference.ledger_contact import PRESSING, is_carried, is_over, is_pushed_along
 from tests.reference.ledger_law import Surface, is_friction, least_rebound
 from tests.reference.ledger_motion import Turning
 from tests.reference.ledger_row import BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CORNER_BOUNCE, CRUSH, Row, apart
@@ -191,12 +191,18 @@ class Known:
         f = self.scene.ball.f * self.scene.elements[bearer.element].f
         ax, ay = self.walk.acceleration
         press = -(ax * bearer.nx + ay * bearer.ny)
-        if is_friction(f, self.rules) and press > PRESSING * (abs(ax) + abs(ay)):
-            return Mode.RESTS
         bearings = self.touching(state)
+        others = [b for b in bearings if b.element != bearer.element]
+        moved = apart((state.vx, state.vy), (bearer.ux, bearer.uy)) > STANDING
+        pushed = moved and any(b.ux or b.uy for b in others)
+        if is_friction(f, self.rules) and press > PRESSING * (abs(ax) + abs(ay)) and not pushed:
+            return Mode.RESTS
         if state.vx == state.vy == 0.0 and is_carried(self.walk.acceleration, bearings):
             return Mode.RESTS
-        slides = any(b.element == bearer.element and b.straight for b in bearings)
+        borne = [b for b in bearings if b.element == bearer.element and b.straight]
+        if any(is_pushed_along(b, bearings, (state.vx, state.vy)) for b in borne):
+            return Mode.SETTLES
+        slides = bool(borne)
         return Mode.SLIDES if slides else Mode.RESTS
 
     def at_instant(self, index: int) -> Iterator[Row]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Sequence
 
-from tests.reference.ledger_contact import closing_on
+from tests.reference.ledger_contact import closing_on, gets_away
 from tests.reference.ledger_known import Way
 from tests.reference.ledger_law import ROLLING, capped
 from tests.reference.ledger_row import BOUNCE, Row, apart
@@ -164,8 +164,11 @@ class PairChecks(RowChecks):
         near = self.touches.all_at(
             self.setting.shapes, state, self.walk.enabled, self.walk.acceleration, {row.element: (row.nx, row.ny)}, room
         )
-        normals = [(b.nx, b.ny) for b in near]
-        normals += [
+        # At this instant it stops: the row tells how fast it came.
+        near = [b._replace(ux=row.ux, uy=row.uy) if b.element == row.element else b for b in near]
+        if not gets_away(near, self.scene.max_speed or math.inf):
+            return True
+        normals = [
             (r.nx, r.ny)
             for r in self.rows[max(0, index - 64) : index]
             if r.kind == BOUNCE and apart((r.x, r.y), (row.x, row.y)) <= room

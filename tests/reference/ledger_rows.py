@@ -187,7 +187,8 @@ class RowChecks(Known):
         # Whether it closes on anything that it surely touches has been looked at.
         bases = [row.before] if split(self.surfaces(row, 0.0)[0], *row.before)[0] <= scale else []
         if closing > 0.0 and self.is_over(index, bearings, row.before):
-            bases += projections(bearings, row.before)
+            for left in projections(bearings, row.before):
+                bases += [left, *self.kept_ahead(row, bearings, left)]
         lawful = []
         for b in bearings:
             if b.element == row.element and apart((b.nx, b.ny), (row.nx, row.ny)) <= TOLERANCE:

@@ -156,7 +156,8 @@ class Touches:
         if feature.reach == 0.0 or (isinstance(feature, Line) and feature.one_way):
             speed = np.hypot(vx, vy)
             sure &= self._came & (touch.margin > 1e-9 * extent)  # past an end is beside it
-            sure &= nx * vx + ny * vy < -1e-9 * speed  # along the surface nothing tells its side
+            came = nx * (vx - ux) + ny * (vy - uy)
+            sure &= came < -1e-9 * (speed + np.hypot(ux, uy))  # along the surface nothing tells its side
         before = np.where(sure, _closing(table, nx, ny, ux, uy, "vx0", "vy0"), -math.inf)
         after = np.where(sure, _closing(table, nx, ny, ux, uy, "vx1", "vy1"), -math.inf)
         better = before > self._fastest

@@ -31,7 +31,7 @@ class Mode(Enum):
     SLIDES = auto()  # along a wall, under what the wall leaves of the acceleration
     RESTS = auto()
     STANDS = auto()  # between other balls, for a while
-    SETTLES = auto()  # is shown in uniform motion along a wall while its last small bounces go on
+    SETTLES = auto()  # moves uniformly along a wall: pushed by a part, or shown so while its last small bounces go on
 
 
 class Bearer(NamedTuple):

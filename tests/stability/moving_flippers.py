@@ -143,11 +143,24 @@ FLIPPERS = [
     Case(
         name="flipper crushes a ball on a wall",
         why="there is no room for it beneath: it is caught and stays where it is until the flipper lets go",
-        scene=table(flipper(0.8, -1.2, b=0.5), Wall((0.0, -0.03), (0.2, -0.03), name="floor")),
+        scene=table(
+            flipper(0.8, -1.2, b=0.5),
+            Wall((0.0, -0.03), (0.2, -0.03), name="floor"),
+            Wall((0.09, -0.03), (0.09, 0.3), name="end"),
+        ),
         position=(0.06, -0.03 + R),
         script=(0.25, press(), 0.25, press(False), 0.5),
         rows="floor begin, .*left crush, left stop, .*",
         expect=(count("left crush", 1), between("y", lambda run: run.position[1], -0.03 + R - 1e-9, 0.2)),
+    ),
+    Case(
+        name="flipper squeezes a ball out of a wedge",
+        why="the wedge is open at its far end: the ball leaves along the floor, faster than the flipper comes",
+        scene=table(flipper(0.8, -1.2, b=0.5), Wall((0.0, -0.03), (2.0, -0.03), name="floor")),
+        position=(0.06, -0.03 + R),
+        script=(0.25, press(), 0.25),
+        rows="floor begin, .*left stop.*",
+        expect=(count("left crush", 0), between("vx", lambda run: run.velocity[0], 1.0, 50.0)),
     ),
     Case(
         name="point on a flipper",

@@ -13,9 +13,9 @@ from bounce_env.engine.contact.corners import (
     most_bounces,
     project_bounces,
 )
-from bounce_env.engine.contact.hits import bounce_off
+from bounce_env.engine.contact.hits import bounce_off, count_bounce
 from bounce_env.engine.contact.restitution import closing_speed, is_soft, normal_load, push_off, slow_speed
-from bounce_env.engine.contact.squeeze import is_crushed
+from bounce_env.engine.contact.room import fastest_escape, is_crushed_by
 from bounce_env.engine.memory.records import CRUSHED
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED
@@ -89,7 +89,7 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
         if ball.touched > 1 and bounce_off_both(state, w, k, i, noise, ledger):
             continue
         kicked = bounce_off(state, w, k, i, closing, noise, ledger)
-        if state.parts is not None and is_crushed(ball, state.touches[w, i], state.scenes[state.worlds[w].scene]):
+        if is_crushed_by(state, w, k, i):
             ball.status = CRUSHED
             return -1, -1, ball.vx, ball.vy
         if ball.touched == 1:
@@ -97,13 +97,22 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
         i = -1
     if i < 0 and BOUNCES_AT_ONE_EVENT * (ball.confined + 1) < most_bounces(ball, state.touches, w):
         return -1, GOES_ON, ball.vx, ball.vy
+    vx, vy = ball.vx, ball.vy
+    return -1, _end_bounces(state, w, k), vx, vy
+
+
+@function
+def _end_bounces(state: State, w: int, k: int) -> int:
+    """Take from the velocity what closes, or crush the ball; return the surface closed on fastest, -1 for none."""
+    ball = state.balls[w, k]
     i, _ = fastest_closing(ball, state.touches, w, 0.0)
     vx, vy = ball.vx, ball.vy
-    if i >= 0 and not project_bounces(ball, state.touches, w, i):
+    fastest = fastest_escape(ball, state.touches, w, state.scenes[state.worlds[w].scene])
+    if i >= 0 and not project_bounces(ball, state.touches, w, i, fastest):
         ball.status, ball.vx, ball.vy = CRUSHED, vx, vy
     elif i >= 0:
         keep_ahead(ball, state.touches, w)
-    return -1, i, vx, vy
+    return i
 
 
 @routine
@@ -115,6 +124,12 @@ def bounce_off_fast(state: State, w: int, k: int, slowest: float, ledger: Table)
         if i < 0:
             return
         bounce_off(state, w, k, i, closing, 0.0, ledger)
-        if state.parts is not None and is_crushed(ball, state.touches[w, i], state.scenes[state.worlds[w].scene]):
+        if is_crushed_by(state, w, k, i):
             ball.status = CRUSHED
             return
+    if BOUNCES_AT_ONE_EVENT * (ball.confined + 1) < most_bounces(ball, state.touches, w):
+        return
+    vx, vy = ball.vx, ball.vy
+    i = _end_bounces(state, w, k)
+    if i >= 0 and ball.status != CRUSHED:
+        count_bounce(state, w, k, state.touches[w, i], vx, vy, ledger)

@@ -12,7 +12,7 @@ from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.bounces import bounce_off_fast, fastest_closing
 from bounce_env.engine.contact.cluster_motion import go_on, is_driven
 from bounce_env.engine.contact.projection import project
-from bounce_env.engine.contact.squeeze import doom, is_to_be_crushed
+from bounce_env.engine.contact.room import doom
 from bounce_env.engine.contact.touching import collect_touches
 from bounce_env.engine.detect.pairs import has_no_room, slowest_pair_rebound, slowest_rebound
 from bounce_env.engine.detect.schedule import schedule_nothing, schedule_resolve
@@ -120,7 +120,7 @@ def _list_surfaces(state: State, w: int, i: int, first: bool, count: int, ledger
     ball, scene, member = state.balls[w, i], state.worlds[w].scene, state.members[w, i]
     collect_touches(state, w, i)
     slowest = math.inf if has_no_room(state, ball) else slowest_rebound(state, w, ball)
-    slowest = 0.0 if is_to_be_crushed(ball) else slowest
+    slowest = 0.0 if ball.doomed else slowest
     fast, _ = fastest_closing(ball, state.touches, w, slowest)
     member.hits = 0
     if fast >= 0 and ball.status != CRUSHED:
@@ -230,7 +230,7 @@ def _squeeze(state: State, w: int, count: int) -> None:
     for p in range(count):
         contact = state.contacts[w, p]
         if contact.part >= 0 and contact.ux * contact.nx + contact.uy * contact.ny > 0.0:
-            doom(state.balls[w, contact.one], contact)
+            doom(state.balls[w, contact.one], contact.part)
 
 
 @function

@@ -7,7 +7,6 @@ from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.bounces import take_vague
 from bounce_env.engine.contact.cluster import resolve_cluster, touch_others
 from bounce_env.engine.contact.restitution import capped
-from bounce_env.engine.contact.squeeze import take_opposed
 from bounce_env.engine.contact.touching import collect_touches, keep_beside
 from bounce_env.engine.detect.pairs import (
     is_pressed_by_balls,
@@ -103,8 +102,6 @@ def _exchange_speeds(
     one.vx, one.vy = vx + share * gain * nx, vy + share * gain * ny
     other.vx, other.vy = ux - (1.0 - share) * gain * nx, uy - (1.0 - share) * gain * ny
     # A ball may be crushed against another one, too.
-    take_opposed(one, head, nx, ny)
-    take_opposed(other, head, -nx, -ny)
     _cap_pair_speed(one, other, nx, ny, head.max_speed, world)
     _cap_pair_speed(other, one, -nx, -ny, head.max_speed, world)
     world.bounces += 1

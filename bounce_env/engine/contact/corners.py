@@ -14,14 +14,12 @@ from bounce_env.engine.contact.restitution import (
     slow_speed,
     surface_speed,
 )
-from bounce_env.engine.contact.squeeze import note_strike
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import (
     ALIGNED,
     BOUNCES_AT_ONE_EVENT,
     BOUNCES_AT_ONE_INSTANT,
     CORNER,
-    OPPOSED,
     ULPS_OF_SPEED,
 )
 
@@ -117,11 +115,11 @@ def is_bounce_damped(state: State, w: int, k: int, i: int, closing: float) -> bo
 
 
 @function
-def project_bounces(ball: Record, touches: Table, w: int, first: int) -> bool:
+def project_bounces(ball: Record, touches: Table, w: int, first: int, fastest: float) -> bool:
     """Take from the velocity what closes on any touched surface: along one of them where the others allow, else all.
 
     The one closed on fastest (`first`) is tried first. Returns False where a part closes on the ball and nothing lets
-    it get away.
+    it get away, no faster than `fastest` [m/s].
     """
     vx, vy = ball.vx, ball.vy
     for n in range(ball.touched):
@@ -144,11 +142,10 @@ def project_bounces(ball: Record, touches: Table, w: int, first: int) -> bool:
         return True
     for i in range(ball.touched):
         for j in range(i):
-            if _bounce_out_of_squeeze(ball, touches[w, i], touches[w, j]) and _is_bounce_allowed(
-                ball, touches, w, vx, vy
-            ):
+            out = _keep_ahead_of_both(ball, touches[w, i], touches[w, j], fastest)
+            if out and _is_bounce_allowed(ball, touches, w, vx, vy):
                 return True
-    note_strike(ball, touches[w, striker])
+    ball.struck = touches[w, striker].part
     return False
 
 
@@ -195,11 +192,11 @@ def _bounce_striker(ball: Record, touches: Table, w: int) -> int:
 
 
 @function
-def _bounce_out_of_squeeze(ball: Record, one: Record, other: Record) -> bool:
-    """Let the ball keep just ahead of two surfaces, along both; False where they oppose each other too much for it."""
+def _keep_ahead_of_both(ball: Record, one: Record, other: Record, fastest: float) -> bool:
+    """Let the ball keep just ahead of two surfaces, along both; False where that takes more than `fastest` [m/s]."""
     turn = one.nx * other.ny - one.ny * other.nx
-    if one.nx * other.nx + one.ny * other.ny < -OPPOSED or abs(turn) <= ALIGNED:
+    if abs(turn) <= ALIGNED:
         return False
     a, b = surface_speed(one), surface_speed(other)
     ball.vx, ball.vy = (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
-    return True
+    return math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) <= fastest

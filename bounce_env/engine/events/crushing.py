@@ -38,16 +38,17 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
     """
     ball, world = state.balls[w, k], state.worlds[w]
     m = ball.struck
+    nx, ny, ux, uy = _surface_at_ball(state, w, k, m)
     motion, shape = state.motions[w, m], state.parts[world.scene, m]
     if turns_back(motion, shape, kept_part_offset(motion, shape, world.time_hi, world.time_lo)):
-        ball.status, ball.struck, ball.squeezes = OK, -1, 0
+        ball.status, ball.struck, ball.doomed = OK, -1, 0
         schedule_resolve(ball)
     else:
         vx, vy = ball.vx, ball.vy
         ball.vx, ball.vy, ball.ax, ball.ay = 0.0, 0.0, 0.0, 0.0
         ball.contact, ball.rides, ball.support, ball.settling = HELD, -1, shape.element, 0
-        ball.nx, ball.ny = ball.snx, ball.sny
-        surface = Surface(shape.element, ball.nx, ball.ny, ball.sux, ball.suy)
+        ball.nx, ball.ny = nx, ny
+        surface = Surface(shape.element, nx, ny, ux, uy)
         append_contact(ledger, world, ball, k, CRUSH, surface, vx, vy)
         ball.hit_after, ball.end_after, ball.sensor_after = math.inf, math.inf, math.inf
         plan_part_zones(state, w, k, 0.0)
@@ -55,6 +56,16 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
         let_go(state, w, k)
     plan_pairs(state, w, k)
     block_part(state, w, m, ledger)
+
+
+@function
+def _surface_at_ball(state: State, w: int, k: int, m: int) -> tuple[float, float, float, float]:
+    """Return the normal of part `m`, to ball `k`, and the velocity [m/s] of its surface there: (nx, ny, ux, uy)."""
+    ball, part = state.balls[w, k], moving_part(state, w, m)
+    core, radius = part_core_at(part, ball.hi, ball.lo), part.shape.radius
+    nx, ny, _, nearest = nearest_on_core(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
+    ux, uy = part_surface_velocity(part, core, nearest * core.ux + radius * nx, nearest * core.uy + radius * ny)
+    return nx, ny, ux, uy
 
 
 @where("parts", inline=False)
@@ -105,7 +116,7 @@ def _free_crushed(state: State, w: int, k: int, m: int) -> None:
     """Let a crushed ball go on, and what crushed it, unless that is part `m`, which has been told where to."""
     ball = state.balls[w, k]
     crusher = ball.struck
-    ball.status, ball.struck, ball.squeezes = OK, -1, 0
+    ball.status, ball.struck, ball.doomed = OK, -1, 0
     disturb(state, w, k, 1.0, 0.0, 0.0)
     if crusher != m and crusher >= 0:
         end_rides(state, w, crusher)

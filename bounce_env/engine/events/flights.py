@@ -23,7 +23,7 @@ def place(state: State, w: int, k: int, x: float, y: float, vx: float, vy: float
     ball.hi, ball.lo = world.time_hi, world.time_lo
     ball.status = OK
     ball.contact, ball.rides, ball.support, ball.settling = FLYING, -1, -1, 0
-    ball.struck, ball.squeezes = -1, 0
+    ball.struck, ball.doomed = -1, 0
     ball.confined, ball.strayed, ball.meets = 0, 0.0, 0
     ball.tolerance = ULPS_OF_LENGTH * state.scenes[world.scene].extent
     set_initial_sides(state, w, k)

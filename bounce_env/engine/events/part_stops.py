@@ -152,7 +152,7 @@ def _release_caught(state: State, w: int, m: int) -> None:
     for k in range(state.balls.shape[1]):
         ball = state.balls[w, k]
         if ball.struck == m and ball.status != CRUSHED:
-            ball.struck, ball.squeezes = -1, 0
+            ball.struck, ball.doomed = -1, 0
 
 
 @function

@@ -83,8 +83,7 @@ BALL = record(
     sensor_after="f8", sensor_kind="i8", sensor_index="i8",
     zone_after="f8",  # duration to the next entry into or exit from a zone that a part can reach
     part_hi="f8", part_lo="f8", part_index="i8",  # next hit of a moving part, as far as its velocity is known
-    struck="i8", squeezes="i8", sx="f8", sy="f8",  # the last strike by a closing part, see `engine.events.crushing`
-    snx="f8", sny="f8", sux="f8", suy="f8",
+    struck="i8", doomed="i8",  # the part that crushed it, or -1; 1: that will when it strikes next, see `contact.room`
 )  # fmt: skip
 CURVE_SLIDE = record(  # of a ball that slides on a circle or an arc, see `motion.curve_slide`
     x="f8", y="f8", radius="f8", down_x="f8", down_y="f8",

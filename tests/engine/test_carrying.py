@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bounce_env import Ball, EventKind, Paddle, Scene, Wall, World
+from bounce_env import Ball, EventKind, Paddle, Scene, Status, Wall, World
 
 RADIUS, G = 0.02, 9.81
 PUSH = (0.3, 0.0)
@@ -97,3 +97,58 @@ def test_nothing_is_absorbed_before_the_wall_has_come():
     rows = world_with_wall(0.0, 0.0, 0.9, b=0.5).advance(3.0, ledger=True)
     kinds = [EventKind(row["kind"]).name for row in rows if row["time"] > 0.0]
     assert kinds == ["BOUNCE", "CONTACT_ENDS", "CONTACT_BEGINS"]
+
+
+def press(degrees: float, gap: float, b: float = 0.5) -> World:
+    """A wall over a floor, `degrees` off lying level with it, that comes down on a ball with `gap` [m] to spare."""
+    rise = math.tan(math.radians(degrees))
+    middle = 2.0 * RADIUS + gap
+    lid = Wall((-1.0, middle - rise), (1.0, middle + rise), b=b, draggable=True, name="wall", reach=((-9, -9), (9, 9)))
+    world = World(Scene(ball=Ball(radius=RADIUS), gravity=(0, -G), elements=(Wall((-9, 0), (9, 0), b=b), lid)))
+    world.reset(position=(0.0, RADIUS), velocity=(0.0, 0.0))
+    world.command("wall", ((0.0, -0.1), (0.0, -0.1)))
+    return world
+
+
+@pytest.mark.parametrize("degrees", [2.0, 5.0, 20.0])
+def test_a_wedge_that_closes_squeezes_a_ball_out(degrees):
+    """The wedge is open by more than the degree or so at which a ball would have to be 64 times as fast as the wall."""
+    world = press(degrees, gap=0.01)
+    rows = world.advance(0.3, ledger=True)
+    assert world.status[0] == Status.OK
+    assert EventKind.CRUSHED not in rows["kind"]
+    assert world.velocity[0][0] > 0.099 / math.tan(math.radians(degrees))
+    assert world.position[0][1] > RADIUS - 1e-12
+
+
+@pytest.mark.parametrize("degrees", [0.0, 1e-9, 0.5])
+def test_a_press_that_leaves_no_way_out_crushes_the_ball(degrees):
+    world = press(degrees, gap=0.01)
+    rows = world.advance(0.3, ledger=True)
+    assert world.status[0] == Status.CRUSHED
+    assert rows["kind"].tolist().count(EventKind.CRUSHED) == 1
+    room = 2.0**-14 * world._state.scenes[0].extent
+    last = rows[rows["kind"] == EventKind.CRUSHED][0]
+    assert -1e-12 <= 0.01 - 0.1 * last["time"] <= room  # where a clearance is left, and not before
+    world.command("wall", ((0.0, 0.1), (0.0, 0.1)))
+    world.advance(0.5)
+    assert world.status[0] == Status.OK
+
+
+def test_a_part_that_stops_in_time_crushes_nothing():
+    floor, room = Wall((-1, 0), (1, 0), b=0.5), 1e-5
+    ram = Paddle(
+        rail_start=(0, 0.2),
+        rail_end=(0, 2 * RADIUS + 0.01 + room),
+        half_width=0.0,
+        radius=0.01,
+        max_speed=0.1,
+        b=0.5,
+        name="ram",
+    )
+    world = World(Scene(ball=Ball(radius=RADIUS), gravity=(0, -G), max_speed=20.0, elements=(floor, ram)))
+    world.reset(position=(0.0, RADIUS), velocity=(0.0, 0.0))
+    world.command("ram", 0.1)
+    world.advance(3.0)
+    assert world.status[0] == Status.OK
+    assert abs(world.position[0][1] - RADIUS) < 1e-12

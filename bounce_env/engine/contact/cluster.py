@@ -10,9 +10,9 @@ import math
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.bounces import bounce_off_fast, fastest_closing
+from bounce_env.engine.contact.carrying import runs_off_end
 from bounce_env.engine.contact.cluster_motion import go_on, is_driven
 from bounce_env.engine.contact.projection import project
-from bounce_env.engine.contact.room import doom
 from bounce_env.engine.contact.touching import collect_touches
 from bounce_env.engine.detect.pairs import has_no_room, slowest_pair_rebound, slowest_rebound
 from bounce_env.engine.detect.schedule import schedule_nothing, schedule_resolve
@@ -21,7 +21,7 @@ from bounce_env.engine.memory.records import ABSORBED, CRUSHED, OUT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.motion.path import motion_after
-from bounce_env.engine.tolerances import CLUSTER_GAP, PRESSING, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import ALIGNED, CLUSTER_GAP, PRESSING, ULPS_OF_SPEED
 
 
 @where("pairs", inline=False)
@@ -45,8 +45,10 @@ def resolve_cluster(state: State, w: int, k: int, ledger: Table) -> None:
         _wait_for_hits(state, w, surfaces, count, ball.hi, ball.lo)
         return
     _hold(state, w, surfaces, ledger)
-    _close_nowhere(state, w, count, ledger)
-    go_on(state, w, count, ledger)
+    if _close_nowhere(state, w, count, ledger):
+        go_on(state, w, count, ledger)
+    else:
+        _wait_for_hits(state, w, surfaces, count, math.inf, 0.0)
 
 
 @function
@@ -120,7 +122,6 @@ def _list_surfaces(state: State, w: int, i: int, first: bool, count: int, ledger
     ball, scene, member = state.balls[w, i], state.worlds[w].scene, state.members[w, i]
     collect_touches(state, w, i)
     slowest = math.inf if has_no_room(state, ball) else slowest_rebound(state, w, ball)
-    slowest = 0.0 if ball.doomed else slowest
     fast, _ = fastest_closing(ball, state.touches, w, slowest)
     member.hits = 0
     if fast >= 0 and ball.status != CRUSHED:
@@ -132,6 +133,8 @@ def _list_surfaces(state: State, w: int, i: int, first: bool, count: int, ledger
         touch = state.touches[w, n]
         if count == state.contacts.shape[1]:
             break
+        if _passes_to_round_end(ball, state.touches, w, n):
+            continue
         contact, material = state.contacts[w, count], state.elements[scene, touch.element]
         contact.one, contact.other, contact.nx, contact.ny, contact.gap = i, -1, touch.nx, touch.ny, touch.gap
         contact.ux, contact.uy, contact.curvature = touch.ux, touch.uy, touch.curvature
@@ -141,6 +144,19 @@ def _list_surfaces(state: State, w: int, i: int, first: bool, count: int, ledger
         contact.element, contact.face, contact.part, contact.keeps = touch.element, touch.face, touch.part, 0
         count += 1
     return count
+
+
+@function
+def _passes_to_round_end(ball: Record, touches: Table, w: int, n: int) -> bool:
+    """Return whether a ball at the end of a straight side moves off it on to a round end, which it touches, too."""
+    side = touches[w, n]
+    if side.curvature != 0.0 or not runs_off_end(ball, side):
+        return False
+    for m in range(ball.touched):
+        end = touches[w, m]
+        if end.curvature > 0.0 and end.nx * side.nx + end.ny * side.ny >= 1.0 - ALIGNED:
+            return True
+    return False
 
 
 @function
@@ -179,7 +195,7 @@ def _is_hit(state: State, w: int, contact: Record) -> bool:
 
 @function
 def _wait_for_hits(state: State, w: int, first: int, count: int, hi: float, lo: float) -> None:
-    """Let members that close fast on something hit it now, and the others do nothing until then."""
+    """Let members that close fast on something hit it now, or get crushed, and the others do nothing until then."""
     for i in range(state.members.shape[1]):
         if state.members[w, i].inside and state.members[w, i].hits:
             schedule_resolve(state.balls[w, i])
@@ -194,8 +210,11 @@ def _wait_for_hits(state: State, w: int, first: int, count: int, hi: float, lo: 
 
 
 @function
-def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> None:
-    """Change the members' velocities by as little as lets them close on nothing, and log what that takes."""
+def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> bool:
+    """Change the members' velocities by as little as lets them close on nothing, and log what that takes.
+
+    Returns whether nothing is crushed by that.
+    """
     fastest, pull = 0.0, 0.0
     for i in range(state.members.shape[1]):
         if state.members[w, i].inside:
@@ -211,8 +230,8 @@ def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> None:
         if contact.least > 0.0 and _opening(state, w, contact) <= 0.0:
             contact.target = drive + contact.least
     slack = ULPS_OF_SPEED * fastest
-    if not project(state, w, count, slack):
-        _squeeze(state, w, count)
+    if not project(state, w, count, slack) and _squeeze(state, w, count):
+        return False
     # Less than what lifts a ball by the tolerance only keeps closed what was.
     least = 4.0 * slack + math.sqrt(2.0 * pull * CLUSTER_GAP * state.scenes[state.worlds[w].scene].extent)
     for p in range(count):
@@ -222,15 +241,19 @@ def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> None:
         if state.members[w, i].inside:
             ball, member = state.balls[w, i], state.members[w, i]
             ball.vx, ball.vy = member.x, member.y
+    return True
 
 
-@where("parts")
-def _squeeze(state: State, w: int, count: int) -> None:
-    """Let the parts that close on members crush these: nothing lets them get away."""
+@where("parts", otherwise=False)
+def _squeeze(state: State, w: int, count: int) -> bool:
+    """Let the parts that close on members crush these, where nothing lets them get away; return whether one does."""
+    crushed = False
     for p in range(count):
         contact = state.contacts[w, p]
-        if contact.part >= 0 and contact.ux * contact.nx + contact.uy * contact.ny > 0.0:
-            doom(state.balls[w, contact.one], contact.part)
+        if contact.opposes and contact.part >= 0 and contact.ux * contact.nx + contact.uy * contact.ny > 0.0:
+            ball = state.balls[w, contact.one]
+            ball.struck, ball.doomed, state.members[w, contact.one].hits, crushed = contact.part, 1, 1, True
+    return crushed
 
 
 @function
@@ -244,10 +267,10 @@ def _hold(state: State, w: int, count: int, ledger: Table) -> None:
         ball, member = state.balls[w, contact.one], state.members[w, contact.one]
         pressed = ball.gx * contact.nx + ball.gy * contact.ny < -PRESSING * (abs(ball.gx) + abs(ball.gy))
         slow = abs(_opening(state, w, contact)) <= slowest_rebound(state, w, ball)
-        if contact.holds and pressed and slow and not member.fixed:
+        if contact.holds and pressed and slow and not member.fixed and contact.least == 0.0:
             vx, vy = ball.vx, ball.vy
-            ball.vx, ball.vy, member.fixed = 0.0, 0.0, 1
-            if vx != 0.0 or vy != 0.0:
+            ball.vx, ball.vy, member.fixed = contact.ux, contact.uy, 1
+            if vx != ball.vx or vy != ball.vy:
                 surface = Surface(contact.element, contact.nx, contact.ny, contact.ux, contact.uy)
                 append_contact(ledger, state.worlds[w], ball, contact.one, ABSORBED, surface, vx, vy)
 

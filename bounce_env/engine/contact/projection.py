@@ -20,12 +20,13 @@ from bounce_env.engine.tolerances import DEPENDENT
 def project(state: State, w: int, count: int, slack: float) -> bool:
     """Move the members' x from x0 so that all of the first `count` contacts are obeyed, each up to `slack`.
 
-    Returns whether that is possible; where it is not, those that cannot be are left out.
+    Returns whether that is possible; where it is not, those that cannot be are left out, and all that together leave no
+    way `opposes`.
     """
     for i in range(state.members.shape[1]):
         state.members[w, i].x, state.members[w, i].y = state.members[w, i].x0, state.members[w, i].y0
     for p in range(count):
-        state.contacts[w, p].force, state.contacts[w, p].slot = 0.0, -1
+        state.contacts[w, p].force, state.contacts[w, p].slot, state.contacts[w, p].opposes = 0.0, -1, 0
     active, possible = 0, True
     for p in range(count):
         if state.contacts[w, p].keeps:
@@ -126,6 +127,10 @@ def _enforce(state: State, w: int, p: int, active: int) -> int:
             if not other.keeps and row.step > DEPENDENT and other.force < t * row.step:
                 t, blocking = other.force / row.step, i
         if t == math.inf:
+            contact.opposes = 1
+            for i in range(active):
+                if state.actives[w, i].step < -DEPENDENT:
+                    state.contacts[w, state.actives[w, i].contact].opposes = 1
             _restore(state, w, p, before, active)
             return -1 - before
         contact.force += t

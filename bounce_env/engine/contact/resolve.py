@@ -35,6 +35,7 @@ from bounce_env.engine.memory.records import (
     HELD,
     JAMMED,
     NEXT_PART,
+    ON_CURVE,
     RESOLVE,
     RIDING,
     SETTLES,
@@ -61,6 +62,9 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     at_once: whether its flight has ended where it began, by something that it was to hit.
     """
     ball = state.balls[w, k]
+    if ball.doomed:
+        ball.status = CRUSHED
+        return
     if is_pressed_by_balls(state, w, k):
         resolve_cluster(state, w, k, ledger)
         return
@@ -152,7 +156,7 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
     if state.gravity is not None or state.arcs is not None:
         # Told at once of a hit of something that it does not close on, a ball that rides on a part, or slides into one,
         # would be so for ever: it hops off.
-        slides_in = contact >= 0 and ball.next_kind == NEXT_PART
+        slides_in = (contact >= 0 or contact == ON_CURVE) and ball.next_kind == NEXT_PART
         again = (contact == RIDING or slides_in) and at_once and state.worlds[w].bounces == bounces
         vx, vy = ball.vx, ball.vy
         _end_hops_on_curves(state, w, k)

@@ -21,7 +21,7 @@ def is_crushed_by(state: State, w: int, k: int, i: int) -> bool:
     ball, part, closing = state.balls[w, k], state.touches[w, i].part, surface_speed(state.touches[w, i])
     if part < 0 or closing <= 0.0:
         return False
-    if not (ball.doomed and ball.struck == part) and not _leaves_no_room(state, w, k, i, part, closing):
+    if not _leaves_no_room(state, w, k, i, part, closing):
         return False
     ball.struck = part
     return True
@@ -91,9 +91,3 @@ def _closes_on_none(ball: Record, touches: Table, w: int, vx: float, vy: float) 
         if (vx - touch.ux) * touch.nx + (vy - touch.uy) * touch.ny < -noise:
             return False
     return True
-
-
-@function
-def doom(ball: Record, part: int) -> None:
-    """Let the next strike of a part crush a ball that, among others, nothing lets get away."""
-    ball.struck, ball.doomed = part, 1

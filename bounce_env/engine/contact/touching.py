@@ -199,6 +199,9 @@ def _touch_part(
         touch = state.touches[w, ball.touched - 1]
         touch.part, touch.ux, touch.uy, touch.least = m, vx, vy, least
         touch.moves = 1 if moves else 0
-        touch.length = core.front - core.back
-        touch.along = nearest - core.back if core.ux * ny > core.uy * nx else core.front - nearest
+        if straight:
+            touch.length = core.front - core.back
+            touch.along = nearest - core.back if core.ux * ny > core.uy * nx else core.front - nearest
+        else:
+            touch.along, touch.length = shape.offset_radius, 2.0 * shape.offset_radius  # it has no ends
     return True

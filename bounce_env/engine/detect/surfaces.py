@@ -55,7 +55,8 @@ def _is_left_to_cluster(state: State, w: int, ball: Record, gap: float, rate: fl
     """
     room = CLUSTER_GAP * state.scenes[state.worlds[w].scene].extent
     pull = abs(ball.gx) + abs(ball.gy) + abs(ball.ax) + abs(ball.ay)
-    return ball.settling == LEANS and gap <= room and rate * rate <= 8.0 * room * pull
+    noise = PRESSING * (abs(ball.vx) + abs(ball.vy))
+    return ball.settling == LEANS and gap <= room and rate * rate <= 8.0 * room * pull + noise * noise
 
 
 @function

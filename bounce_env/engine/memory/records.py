@@ -83,7 +83,7 @@ BALL = record(
     sensor_after="f8", sensor_kind="i8", sensor_index="i8",
     zone_after="f8",  # duration to the next entry into or exit from a zone that a part can reach
     part_hi="f8", part_lo="f8", part_index="i8",  # next hit of a moving part, as far as its velocity is known
-    struck="i8", doomed="i8",  # the part that crushed it, or -1; 1: that will when it strikes next, see `contact.room`
+    struck="i8", doomed="i8",  # the part that crushed it, or -1; 1: that does at its next event, see `contact.cluster`
 )  # fmt: skip
 CURVE_SLIDE = record(  # of a ball that slides on a circle or an arc, see `motion.curve_slide`
     x="f8", y="f8", radius="f8", down_x="f8", down_y="f8",
@@ -120,6 +120,7 @@ CONTACT = record(  # between a ball and a surface, or another ball, of a cluster
     keeps="i8",
     bears="f8",  # 1: n.x == target; the force per mass [m/s^2] that it takes to keep it closed
     slot="i8",  # its row among the active ones, or -1
+    opposes="i8",  # 1 of one of those that nothing obeys together
     holds="i8",  # 1 of a surface whose friction stops what it presses
     element="i8",
     face="i8",

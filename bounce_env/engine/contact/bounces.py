@@ -79,12 +79,13 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
     """
     ball = state.balls[w, k]
     noise = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
-    i = -1
+    damped = False
     for _ in range(BOUNCES_AT_ONE_EVENT):
         i, closing = fastest_closing(ball, state.touches, w, 0.0)
         if i < 0:
             return -1, -1, ball.vx, ball.vy
-        if ball.touched > 1 and is_bounce_damped(state, w, k, i, closing):
+        damped = ball.touched > 1 and is_bounce_damped(state, w, k, i, closing)
+        if damped:
             break
         if ball.touched > 1 and bounce_off_both(state, w, k, i, noise, ledger):
             continue
@@ -94,8 +95,7 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
             return -1, -1, ball.vx, ball.vy
         if ball.touched == 1:
             return (-1 if kicked else i), -1, ball.vx, ball.vy
-        i = -1
-    if i < 0 and BOUNCES_AT_ONE_EVENT * (ball.confined + 1) < most_bounces(ball, state.touches, w):
+    if not damped and BOUNCES_AT_ONE_EVENT * (ball.confined + 1) < most_bounces(ball, state.touches, w):
         return -1, GOES_ON, ball.vx, ball.vy
     vx, vy = ball.vx, ball.vy
     return -1, _end_bounces(state, w, k), vx, vy

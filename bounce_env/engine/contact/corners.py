@@ -84,15 +84,15 @@ def _may_be_one_of_two(state: State, w: int, touch: Record, closing: float) -> b
 def most_bounces(ball: Record, touches: Table, w: int) -> int:
     """Return how many bounces at one instant end a ball's stay in a corner.
 
-    Between two walls at an angle a ball that loses nothing leaves after pi / angle of them at most, as its path
-    mirrored in each wall is a straight line; the angle's sine is a little less than it.
+    Between two walls that stand a ball that loses nothing leaves after pi / angle of them at most, as its path mirrored
+    in each wall is a straight line; the angle's sine is a little less than it.
     """
     most = 0.0
     for i in range(ball.touched):
         for j in range(i):
             one, other = touches[w, i], touches[w, j]
             turn, along = one.nx * other.ny - one.ny * other.nx, one.nx * other.nx + one.ny * other.ny
-            if along < 0.0 and abs(turn) > ALIGNED:
+            if along < 0.0 and abs(turn) > ALIGNED and is_standing(one) and is_standing(other):
                 most = max(most, math.pi / abs(turn))
     return BOUNCES_AT_ONE_EVENT + int(min(4.0 * math.ceil(most), float(BOUNCES_AT_ONE_INSTANT)))
 

@@ -56,8 +56,8 @@ MANY_EVENTS = {
 
 # What is wrong again, and why: it must fail until it is mended.
 OPEN = {
-    "three_balls_in_a_row_across_gravity": "a ball that is to be squeezed out between others takes its events to and fro "
-    "(it was crushed after eight strikes before those were no longer counted)",
+    "three_balls_in_a_row_across_gravity": "a ball without room goes to and fro for all of its events: it was "
+    "crushed after eight strikes as long as those were counted",
 }
 
 

@@ -32,9 +32,9 @@ BOUNCES_AT_ONE_EVENT = 32
 BOUNCES_AT_ONE_INSTANT = 4096
 
 # A ball that has hit others so often (and 4 times more for each two balls), while it has not come further than this
-# share of the scene's extent, has no room: to and fro in a gap of less than 1e-9 of it, or thrown at each other again
+# share of the scene's extent, has no room: to and fro in a gap of less than 4e-9 of it, or thrown at each other again
 # and again from next to no distance. Its hits have no rebound any more.
-MEETINGS_WITHOUT_ROOM = 1024
+MEETINGS_WITHOUT_ROOM = 256
 ROOM_TO_MEET = 2.0**-20
 
 # Of balls that lie on each other, closing slower than this share of sqrt(gravity times radius) is no hit.

@@ -35,13 +35,17 @@ class RowChecks(Known):
 
     # ---- bounces
 
-    def bounce(self, index: int, row: Row) -> None:
+    def comes_to(self, index: int, row: Row) -> Own | None:
+        """The element that a bounce's row names, if the ball lies on it; the ball goes on from there."""
         self.remember(row)
         own = self.stands_on(index, row)
         self.goes_on(row)
+        return own
+
+    def bounce(self, index: int, row: Row) -> None:
+        own, scale = self.comes_to(index, row), self.blur(row)
         if own is None:
             return
-        scale = self.blur(row)
         closing, _ = split(self.surfaces(row, 0.0)[0], *row.before)
         rival = self.touches.rival(index)
         if rival.which != row.element and rival.faster > scale:
@@ -69,12 +73,9 @@ class RowChecks(Known):
 
     def corner_bounce(self, index: int, row: Row) -> None:
         """Two rows that stand side by side: each pushes along its normal, both together turn the velocity round."""
-        self.remember(row)
-        own = self.stands_on(index, row)
-        self.goes_on(row)
+        own, scale = self.comes_to(index, row), self.blur(row)
         if own is None:
             return
-        scale = self.blur(row)
         push = (row.vx1 - row.vx0) * row.nx + (row.vy1 - row.vy0) * row.ny
         if push < -scale or apart((row.vx0 + push * row.nx, row.vy0 + push * row.ny), row.after) > scale:
             self.say(index, f"{row.before} to {row.after} is no push along the normal")

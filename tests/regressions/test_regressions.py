@@ -50,24 +50,15 @@ def test_every_case_is_complete() -> None:
 MANY_EVENTS = {
     "arc_hop_as_small_as_its_gap", "budget_with_a_ledger", "cup_smaller_than_the_ball", "elastic_in_a_bowl",
     "hops_off_what_it_is_leaving", "presses_on_a_bumper_after_no_time", "slides_into_a_part_that_it_does_not_close_on",
+    "three_balls_in_a_row_across_gravity",
     "told_of_the_end_of_a_hop_shorter_than_the_clock_can_tell", "two_balls_wedged_by_a_dragged_wall",
     "upright_wall_and_bowl",
 }  # fmt: skip
 
-# What is wrong again, and why: it must fail until it is mended.
-OPEN = {
-    "three_balls_in_a_row_across_gravity": "a ball without room goes to and fro for all of its events: it was "
-    "crushed after eight strikes as long as those were counted",
-}
 
-
-def marks_of(name: str) -> Any:
-    if name in OPEN:
-        return pytest.mark.xfail(strict=True, reason=OPEN[name])
-    return () if name in MANY_EVENTS else pytest.mark.fast
-
-
-@pytest.mark.parametrize("name", [pytest.param(name, marks=marks_of(name)) for name in NAMES])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in MANY_EVENTS else pytest.mark.fast) for name in NAMES]
+)
 def test_bug_has_not_come_back(name: str) -> None:
     world, run, expected = replay(name)
     assert [STATUS[status] for status in world.status.tolist()] == np.atleast_1d(expected["status"]).tolist()

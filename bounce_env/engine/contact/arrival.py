@@ -21,7 +21,7 @@ def end_flight(state: State, w: int, k: int, t: float, hi: float, lo: float) -> 
         ball.confined = 0
     ball.strayed += way
     if ball.strayed > ROOM_TO_MEET * extent:
-        ball.strayed, ball.meets, ball.doomed = 0.0, 0, 0
+        ball.strayed, ball.meets = 0.0, 0
     motion = motion_after(state, w, k, t)
     ball.ax, ball.ay = acceleration_in(state, w, k, motion)
     ball.x, ball.y, ball.vx, ball.vy = motion

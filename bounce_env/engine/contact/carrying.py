@@ -2,6 +2,7 @@
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.restitution import (
+    ahead_of_both,
     along_speed,
     closing_speed,
     is_standing,
@@ -26,9 +27,8 @@ def carry(state: State, w: int, k: int, i: int, holds: bool) -> bool:
             continue
         if not (_pushes_on(state, w, part) if holds else _presses_on(ball, wall, part, turn)):
             continue
-        speed = (part.ux * part.nx + part.uy * part.ny) / turn
         vx, vy = ball.vx, ball.vy
-        ball.vx, ball.vy = -speed * wall.ny, speed * wall.nx
+        ball.vx, ball.vy = ahead_of_both(wall, part, turn)
         if _stays_between(ball, state.touches, w, i, j):
             ball.contact, ball.rides, ball.support, ball.ax, ball.ay = wall.face, part.part, wall.element, 0.0, 0.0
             return True

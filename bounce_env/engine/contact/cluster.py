@@ -13,6 +13,7 @@ from bounce_env.engine.contact.bounces import bounce_off_fast, fastest_closing
 from bounce_env.engine.contact.carrying import runs_off_end
 from bounce_env.engine.contact.cluster_motion import go_on, is_driven
 from bounce_env.engine.contact.projection import project
+from bounce_env.engine.contact.restitution import is_holding
 from bounce_env.engine.contact.touching import collect_touches
 from bounce_env.engine.detect.pairs import has_no_room, slowest_pair_rebound, slowest_rebound
 from bounce_env.engine.detect.schedule import schedule_nothing, schedule_resolve
@@ -139,8 +140,7 @@ def _list_surfaces(state: State, w: int, i: int, first: bool, count: int, ledger
         contact.one, contact.other, contact.nx, contact.ny, contact.gap = i, -1, touch.nx, touch.ny, touch.gap
         contact.ux, contact.uy, contact.curvature = touch.ux, touch.uy, touch.curvature
         contact.least = touch.least if touch.moves else 0.0
-        rest_speed = state.scenes[scene].rest_speed
-        contact.holds = 1 if material.f == 0.0 or (material.f < 1.0 and rest_speed == 0.0) else 0
+        contact.holds = 1 if is_holding(material.f, state.scenes[scene].rest_speed) else 0
         contact.element, contact.face, contact.part, contact.keeps = touch.element, touch.face, touch.part, 0
         count += 1
     return count

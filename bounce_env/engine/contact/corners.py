@@ -5,6 +5,7 @@ import math
 from bounce_env.engine.compile.jit import Record, Table, function
 from bounce_env.engine.contact.hits import count_corner, rebound_from
 from bounce_env.engine.contact.restitution import (
+    ahead_of_both,
     capped,
     closing_speed,
     is_soft,
@@ -197,6 +198,5 @@ def _keep_ahead_of_both(ball: Record, one: Record, other: Record, fastest: float
     turn = one.nx * other.ny - one.ny * other.nx
     if abs(turn) <= ALIGNED:
         return False
-    a, b = surface_speed(one), surface_speed(other)
-    ball.vx, ball.vy = (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
+    ball.vx, ball.vy = ahead_of_both(one, other, turn)
     return math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) <= fastest

@@ -5,6 +5,7 @@ from bounce_env.engine.contact.restitution import (
     along_speed,
     bounce,
     capped,
+    is_holding,
     is_soft,
     normal_load,
     rolling_speed,
@@ -78,8 +79,7 @@ def _rolling_bounce(
     smallest = rolling_speed(ball, touch, press, head.extent)
     if closing <= 1.5 * smallest and head.rest_speed > 0.0:
         return 0.0, (1.0 if f > 0.0 else 0.0)
-    holds = f == 0.0 or (f < 1.0 and head.rest_speed == 0.0)
-    if material.b >= 1.0 or rebound >= smallest or (rebound == 0.0 and holds):
+    if material.b >= 1.0 or rebound >= smallest or (rebound == 0.0 and is_holding(f, head.rest_speed)):
         return rebound, f
     if is_soft(closing, press, head.extent):
         return 0.0, f

@@ -12,6 +12,7 @@ from bounce_env.engine.contact.restitution import (
     along_speed,
     closing_speed,
     gap_trend,
+    is_holding,
     is_standing,
     is_standing_curve,
     load_noise,
@@ -44,7 +45,7 @@ def find_contact(state: State, w: int, k: int) -> int:
         if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or not _is_pressed(ball, touch):
             continue
         f = state.elements[scene, touch.element].f
-        holds = f == 0.0 or (f < 1.0 and head.rest_speed == 0.0)
+        holds = is_holding(f, head.rest_speed)
         if carry(state, w, k, i, holds):
             return i
         if not _lets_hold(ball, state.touches, w, i):

@@ -75,6 +75,19 @@ def surface_speed(touch: Record) -> float:
 
 
 @function
+def is_holding(f: float, rest_speed: float) -> bool:
+    """Return whether friction stops a ball that is pressed on a surface (docs/physics.md, "Contact")."""
+    return f == 0.0 or (f < 1.0 and rest_speed == 0.0)
+
+
+@function
+def ahead_of_both(one: Record, other: Record, turn: float) -> tuple[float, float]:
+    """Return the velocity [m/s] that keeps up with two touched surfaces, along both; turn: the sine between normals."""
+    a, b = surface_speed(one), surface_speed(other)
+    return (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
+
+
+@function
 def is_standing(touch: Record) -> bool:
     """Return whether a touched surface does not move now."""
     return not touch.moves and touch.ux == 0.0 and touch.uy == 0.0

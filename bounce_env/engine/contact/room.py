@@ -3,7 +3,7 @@
 import math
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
-from bounce_env.engine.contact.restitution import surface_speed
+from bounce_env.engine.contact.restitution import ahead_of_both, surface_speed
 from bounce_env.engine.contact.touching import collect_touches
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import since
@@ -66,8 +66,7 @@ def _gets_away(ball: Record, touches: Table, w: int, fastest: float) -> bool:
     if _closes_on_none(ball, touches, w, 0.0, 0.0):
         return True
     for i in range(ball.touched):
-        one = touches[w, i]
-        drive = one.ux * one.nx + one.uy * one.ny
+        one, drive = touches[w, i], surface_speed(touches[w, i])
         if drive <= fastest and _closes_on_none(ball, touches, w, drive * one.nx, drive * one.ny):
             return True
         for j in range(i):
@@ -75,8 +74,7 @@ def _gets_away(ball: Record, touches: Table, w: int, fastest: float) -> bool:
             turn = one.nx * other.ny - one.ny * other.nx
             if turn == 0.0:
                 continue
-            along = other.ux * other.nx + other.uy * other.ny
-            vx, vy = (drive * other.ny - along * one.ny) / turn, (along * one.nx - drive * other.nx) / turn
+            vx, vy = ahead_of_both(one, other, turn)
             if vx * vx + vy * vy <= fastest * fastest and _closes_on_none(ball, touches, w, vx, vy):
                 return True
     return False

@@ -38,7 +38,8 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
     """
     ball, world = state.balls[w, k], state.worlds[w]
     m = ball.struck
-    nx, ny, ux, uy = _surface_at_ball(state, w, k, m)
+    side = side_of_part(state, w, k, m)
+    nx, ny, _, ux, uy = _surface_at_ball(ball, moving_part(state, w, m), side, world.time_hi, world.time_lo)
     motion, shape = state.motions[w, m], state.parts[world.scene, m]
     if turns_back(motion, shape, kept_part_offset(motion, shape, world.time_hi, world.time_lo)):
         ball.status, ball.struck, ball.doomed = OK, -1, 0
@@ -56,16 +57,6 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
         let_go(state, w, k)
     plan_pairs(state, w, k)
     block_part(state, w, m, ledger)
-
-
-@function
-def _surface_at_ball(state: State, w: int, k: int, m: int) -> tuple[float, float, float, float]:
-    """Return the normal of part `m`, to ball `k`, and the velocity [m/s] of its surface there: (nx, ny, ux, uy)."""
-    ball, part = state.balls[w, k], moving_part(state, w, m)
-    core, radius = part_core_at(part, ball.hi, ball.lo), part.shape.radius
-    nx, ny, _, nearest = nearest_on_core(core, ball.x, ball.y, side_of_part(state, w, k, m), ball.tolerance)
-    ux, uy = part_surface_velocity(part, core, nearest * core.ux + radius * nx, nearest * core.uy + radius * ny)
-    return nx, ny, ux, uy
 
 
 @where("parts", inline=False)
@@ -104,11 +95,20 @@ def meet_crushed(state: State, w: int, k: int, m: int, ledger: Table) -> None:
 @function
 def _approach_to_crushed(ball: Record, part: MovingPart, side: int, hi: float, lo: float) -> tuple[float, float]:
     """Return how far [m] a part is from a crushed ball, and how fast [m/s] it closes; 0 within rounding."""
-    core = part_core_at(part, hi, lo)
+    nx, ny, gap, ux, uy = _surface_at_ball(ball, part, side, hi, lo)
+    closing = ux * nx + uy * ny
+    return gap, closing if abs(closing) > ULPS_OF_SPEED * (abs(ux) + abs(uy)) else 0.0
+
+
+@function
+def _surface_at_ball(
+    ball: Record, part: MovingPart, side: int, hi: float, lo: float
+) -> tuple[float, float, float, float, float]:
+    """Return a part's normal to a ball, the gap [m], and how its surface moves there [m/s]: (nx, ny, gap, ux, uy)."""
+    core, radius = part_core_at(part, hi, lo), part.shape.radius
     nx, ny, distance, nearest = nearest_on_core(core, ball.x, ball.y, side, ball.tolerance)
-    vx, vy = part_surface_velocity(part, core, nearest * core.ux, nearest * core.uy)
-    closing = vx * nx + vy * ny
-    return distance - part.shape.offset_radius, closing if abs(closing) > ULPS_OF_SPEED * (abs(vx) + abs(vy)) else 0.0
+    ux, uy = part_surface_velocity(part, core, nearest * core.ux + radius * nx, nearest * core.uy + radius * ny)
+    return nx, ny, distance - part.shape.offset_radius, ux, uy
 
 
 @where("parts")

@@ -1,8 +1,11 @@
 """No ball escapes from a closed scene, at any speed, point or disc, with or without gravity."""
 
+import math
+
 import numpy as np
 import pytest
 
+from bounce_env import Arc, Ball, Scene
 from bounce_env.engine.memory.records import OK
 from bounce_env.engine.world_batch import WorldBatch
 from tests.conftest import soak_count
@@ -39,6 +42,23 @@ def test_balls_stay_inside_and_keep_their_energy(radius: float, gravity: tuple[f
         balls, bounces = balls + BALLS_PER_SCENE, bounces + int(worlds.bounces.sum())
     print(f"radius {radius}, gravity {gravity}: {balls} balls, {bounces} bounces, none escaped")  # noqa: T201
     assert bounces > balls
+
+
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+def test_elastic_bounces_inside_a_circle_add_up_to_no_gain_and_no_loss(gravity: float) -> None:
+    """A normal is rounded alike each time that a ball comes to it: 10^4 bounces would add that up to 10^-13."""
+    rng = np.random.default_rng(1)
+    scene = Scene(gravity=(0.0, -gravity), ball=Ball(radius=0.05), elements=(Arc((0, 0), 1.0, 0, 2 * math.pi, b=1.0),))
+    worlds = WorldBatch([scene], np.zeros(32, int))
+    worlds.reset(rng.uniform(-0.5, 0.5, (32, 2)), rng.uniform(-3.0, 3.0, (32, 2)))
+    before, drift = energy(worlds.balls, (0.0, -gravity)), []
+    scale = np.abs(before) + 2.0 * gravity
+    for _ in range(300):
+        worlds.advance(10.0)
+        drift.append((energy(worlds.balls, (0.0, -gravity)) - before) / scale)
+    assert np.median(worlds.bounces) > 2_000
+    assert np.median(np.abs(drift[-1])) < 2e-14
+    assert np.abs(drift).max() < 2e-13
 
 
 def energy(balls: np.ndarray, gravity: tuple[float, float]) -> np.ndarray:

@@ -7,6 +7,7 @@ from bounce_env.engine.contact.restitution import (
     capped,
     is_holding,
     is_soft,
+    is_standing,
     normal_load,
     rolling_speed,
 )
@@ -14,6 +15,7 @@ from bounce_env.engine.memory.ledger import Surface, append_contact, count_hit
 from bounce_env.engine.memory.records import BOUNCE, CORNER_BOUNCE
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.instant import before, later
+from bounce_env.engine.tolerances import WEIGHTLESS
 
 
 @function
@@ -22,6 +24,7 @@ def bounce_off(state: State, w: int, k: int, i: int, closing: float, noise: floa
     ball, world, touch = state.balls[w, k], state.worlds[w], state.touches[w, i]
     head, material = state.scenes[world.scene], state.elements[world.scene, touch.element]
     rebound, f = rebound_from(state, w, k, i, closing)
+    keeps_speed = touch.curvature != 0.0 and is_standing(touch) and rebound == closing and f == 1.0
     kicked = material.kick > 0.0 and closing > material.kick_threshold
     if kicked and _is_kick_ready(state, w, k, touch.element, material.cooldown):
         rebound += material.kick
@@ -32,10 +35,26 @@ def bounce_off(state: State, w: int, k: int, i: int, closing: float, noise: floa
     if abs(vx) + abs(vy) <= noise:
         # All that the bounces at this instant have left is rounding, and would go to and fro in a corner.
         vx, vy = 0.0, 0.0
+    elif keeps_speed and not kicked:
+        vx, vy = _with_speed_of(vx, vy, vx0, vy0)
     ball.vx, ball.vy, over = capped(vx, vy, touch.nx, touch.ny, touch.ux, touch.uy, head.max_speed)
     world.speed_capped += over
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
     return kicked
+
+
+@function
+def _with_speed_of(vx: float, vy: float, vx0: float, vy0: float) -> tuple[float, float]:
+    """Return the velocity (vx, vy) [m/s] with the magnitude of (vx0, vy0), from which rounding makes it differ.
+
+    Each time a ball comes to the same point of a curve the rounding of its normal is the same, and would add up. One
+    step of Newton for the root of the squares' ratio.
+    """
+    square = vx * vx + vy * vy
+    if square < WEIGHTLESS:
+        return vx, vy  # it may have lost digits
+    change = 0.5 * ((vx0 - vx) * (vx0 + vx) + (vy0 - vy) * (vy0 + vy)) / square
+    return vx + change * vx, vy + change * vy
 
 
 @function

@@ -57,12 +57,11 @@ BRACKETING_STEPS = 100
 # directions of both.
 PRESSING = 2.0**-40
 
-# On the round end of a part there is no closed form for ever smaller bounces, nor for rolling. There the smallest
-# rebound is this share of sqrt(press / curvature), the speed at which it would let go.
-ROLLING = 0.01
+# With a surface that turns or stretches a contact has no closed form. Its smallest rebound is this share of
+# sqrt(acceleration times size): of the speed at which a ball would let go of it.
+SMALLEST_REBOUND = 0.01
 
-# A ball between several surfaces is taken to have come to rest when it rises no more than so many tolerances of length:
-# the smallest hop on the round end of a part is 16 of them high.
+# A ball between several surfaces is taken to have come to rest when it rises no more than so many tolerances of length.
 CORNER = 64.0
 
 # A ball that has bounced so many times in a row, each time after a way of no more than CORNER tolerances, is between

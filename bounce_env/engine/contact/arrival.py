@@ -23,7 +23,7 @@ def end_flight(state: State, w: int, k: int, t: float, hi: float, lo: float) -> 
     if ball.strayed > ROOM_TO_MEET * extent:
         ball.strayed, ball.meets = 0.0, 0
     motion = motion_after(state, w, k, t)
-    ball.ax, ball.ay = acceleration_in(state, w, k, motion)
+    ball.ax, ball.ay = acceleration_in(state, w, k, t, motion)
     ball.x, ball.y, ball.vx, ball.vy = motion
     ball.hi, ball.lo = hi, lo
     if t > 0.0:  # in no time nothing is rounded, and a push may wait to be resolved

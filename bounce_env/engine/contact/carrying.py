@@ -1,69 +1,233 @@
-"""A ball that a part which translates pushes along a wall: between two straight surfaces it moves uniformly."""
+"""A ball that a part which translates pushes along what stands (docs/physics.md, "Pushed along").
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
+It moves as both ask for: between two straight surfaces uniformly, between a straight and a round one as
+`motion.carried` tells.
+"""
+
+import math
+
+from bounce_env.engine.compile.jit import Record, Table, function, routine, where
 from bounce_env.engine.contact.restitution import (
     ahead_of_both,
     along_speed,
     closing_speed,
+    is_holding,
     is_standing,
     slow_speed,
     surface_speed,
 )
+from bounce_env.engine.memory.records import CARRIED_ALONG
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.tolerances import ALIGNED, PRESSING
+from bounce_env.engine.motion.carried import Carried, carried_acceleration, carried_direction, carried_of
+from bounce_env.engine.motion.instant import since
+from bounce_env.engine.motion.parts import moving_part, part_core_at, part_stop_instant
+from bounce_env.engine.tolerances import ALIGNED, BRACKETING_STEPS, PRESSING
+
+# Pieces in which the end of what presses a ball is looked for.
+PIECES = 64
 
 
-@where("parts", otherwise=False)
-def carry(state: State, w: int, k: int, i: int, holds: bool) -> bool:
-    """Let a part push the ball along touched surface `i`, a wall that it is pressed on, if it does; return whether.
+@where("parts", otherwise=-1)
+def carry(state: State, w: int, k: int) -> int:
+    """Let a part push the ball along a touched surface that stands, if it does; return which, -1 for none."""
+    ball, found = state.balls[w, k], -1
+    for i in range(ball.touched if ball.touched > 1 else 0):
+        for j in range(ball.touched):
+            if found < 0 and _is_carried_between(state, w, k, i, j):
+                found = i
+    return found
 
-    holds: whether the wall stops the ball by friction, which takes all of its speed but for what the part gives it.
+
+@routine
+def _is_carried_between(state: State, w: int, k: int, i: int, j: int) -> bool:
+    """Let part `j` push the ball along surface `i`, which stands, if it does.
+
+    Where the surface stops the ball by friction, that takes all of its speed but for what the part gives it.
     """
-    ball, wall = state.balls[w, k], state.touches[w, i]
-    for j in range(ball.touched if wall.face >= 0 else 0):
-        part = state.touches[w, j]
-        turn = wall.nx * part.ny - wall.ny * part.nx
-        if part.part < 0 or part.moves or is_standing(part) or abs(turn) <= ALIGNED:
-            continue
-        if not (_pushes_on(state, w, part) if holds else _presses_on(ball, wall, part, turn)):
-            continue
-        vx, vy = ball.vx, ball.vy
-        ball.vx, ball.vy = ahead_of_both(wall, part, turn)
-        if _stays_between(ball, state.touches, w, i, j):
-            ball.contact, ball.rides, ball.support, ball.ax, ball.ay = wall.face, part.part, wall.element, 0.0, 0.0
+    ball, touches = state.balls[w, k], state.touches
+    wall, part = touches[w, i], touches[w, j]
+    turn = wall.nx * part.ny - wall.ny * part.nx
+    if part.part < 0 or part.moves or is_standing(part) or abs(turn) <= ALIGNED:
+        return False
+    if wall.part >= 0 or (wall.curvature != 0.0 and part.curvature != 0.0):
+        return False
+    holds = _stops(state, w, ball, wall)
+    slow = slow_speed(ball, wall) + slow_speed(ball, part)
+    if not (holds or (abs(closing_speed(ball, wall)) <= slow and abs(closing_speed(ball, part)) <= slow)):
+        return False
+    if holds and state.elements[state.worlds[w].scene, part.element].kick > 0.0:
+        return False
+    vx, vy = ball.vx, ball.vy
+    ball.vx, ball.vy = ahead_of_both(wall, part, turn)
+    straight = (wall.curvature == 0.0 or _stays_on(ball, wall)) and (part.curvature == 0.0 or _stays_on(ball, part))
+    if _is_pressed_on_both(ball, wall, part, turn, holds, straight) and _closes_on_no_other(ball, touches, w, i, j):
+        ball.rides, ball.support, ball.ax, ball.ay = part.part, wall.element, 0.0, 0.0
+        if not straight:
+            ball.contact = CARRIED_ALONG
+            _begin(state, w, k, i, j, holds)
             return True
-        ball.vx, ball.vy = vx, vy
+        if wall.face >= 0:
+            ball.contact = wall.face
+            return True
+    ball.vx, ball.vy = vx, vy
     return False
 
 
 @function
-def _pushes_on(state: State, w: int, part: Record) -> bool:
-    """Return whether a part comes towards a ball that is held, without a kick."""
-    return surface_speed(part) > 0.0 and state.elements[state.worlds[w].scene, part.element].kick == 0.0
+def _stops(state: State, w: int, ball: Record, wall: Record) -> bool:
+    """Return whether friction of a surface that stands stops the ball, which gravity presses on it."""
+    scene = state.worlds[w].scene
+    pressed = ball.gx * wall.nx + ball.gy * wall.ny < -PRESSING * (abs(ball.gx) + abs(ball.gy))
+    return pressed and is_holding(state.elements[scene, wall.element].f, state.scenes[scene].rest_speed)
 
 
 @function
-def _presses_on(ball: Record, wall: Record, part: Record, turn: float) -> bool:
-    """Return whether a ball moves along both, and gravity does not take it off the part."""
-    pull = (ball.gx * wall.ny - ball.gy * wall.nx) / turn  # what the part has to take of gravity
-    level = PRESSING * (abs(ball.gx) + abs(ball.gy)) / abs(turn)
-    return abs(closing_speed(ball, part)) <= slow_speed(ball, part) and pull >= -level
+def _stays_on(ball: Record, touch: Record) -> bool:
+    """Return whether a ball that touches something round stays at one point of it."""
+    return abs(along_speed(ball, touch)) <= slow_speed(ball, touch)
 
 
 @function
-def _stays_between(ball: Record, touches: Table, w: int, i: int, j: int) -> bool:
-    """Return whether a ball that moves uniformly along two surfaces goes on along them, and closes on no other.
+def _is_pressed_on_both(ball: Record, wall: Record, part: Record, turn: float, holds: bool, straight: bool) -> bool:
+    """Return whether it takes both surfaces to keep the ball in the motion that both ask for.
 
-    Along the round end of a part it does where it stays at one point of it.
+    Of the forces (per mass) along the two normals neither pulls; between straight surfaces that is enough. Where
+    friction stops the ball, the part must come towards it.
     """
-    part = touches[w, j]
-    bends = part.curvature != 0.0 and abs(along_speed(ball, part)) > slow_speed(ball, part)
-    if bends or runs_off_end(ball, touches[w, i]) or (part.curvature == 0.0 and runs_off_end(ball, part)):
-        return False
+    if holds:
+        return surface_speed(part) > 0.0
+    of_wall, of_part = _forces(ball, wall, part, turn)
+    noise = PRESSING * (abs(ball.gx) + abs(ball.gy)) / abs(turn)
+    return min(of_wall, of_part) >= -noise if straight else min(of_wall, of_part) > noise
+
+
+@function
+def _forces(ball: Record, wall: Record, part: Record, turn: float) -> tuple[float, float]:
+    """Return the forces per mass [m/s^2] along both normals that let a ball follow the bends of two surfaces."""
+    along_wall, along_part = along_speed(ball, wall), along_speed(ball, part)
+    # What the normal components of its acceleration are beyond those of gravity.
+    a = -wall.curvature * along_wall * along_wall - (ball.gx * wall.nx + ball.gy * wall.ny)
+    b = -part.curvature * along_part * along_part - (ball.gx * part.nx + ball.gy * part.ny)
+    ax, ay = (a * part.ny - b * wall.ny) / turn, (b * wall.nx - a * part.nx) / turn
+    return (ax * part.ny - ay * part.nx) / turn, (ay * wall.nx - ax * wall.ny) / turn
+
+
+@function
+def _closes_on_no_other(ball: Record, touches: Table, w: int, i: int, j: int) -> bool:
+    """Return whether a ball that moves along two surfaces goes on along them, and closes on no other."""
     for n in range(ball.touched):
-        if n not in (i, j) and closing_speed(ball, touches[w, n]) > slow_speed(ball, touches[w, n]):
+        touch = touches[w, n]
+        if n in (i, j):
+            if runs_off_end(ball, touch):
+                return False
+        elif closing_speed(ball, touch) > slow_speed(ball, touch):
             return False
     return True
+
+
+@where("carried", inline=False)
+def _begin(state: State, w: int, k: int, i: int, j: int, holds: bool) -> None:
+    """Note how a ball moves between surface `i`, which stands, and part `j`: one is straight, the other round."""
+    ball, carried = state.balls[w, k], state.carried[w, k]
+    curve, straight = state.touches[w, i], state.touches[w, j]
+    if curve.curvature == 0.0:
+        curve, straight = straight, curve
+    facing = 1.0 if curve.curvature > 0.0 else -1.0
+    ex, ey = facing * curve.nx, facing * curve.ny
+    carried.x, carried.y, carried.radius = curve.cx, curve.cy, curve.radius
+    carried.ux, carried.uy, carried.sx, carried.sy = curve.ux, curve.uy, straight.ux, straight.uy
+    carried.mx, carried.my = straight.nx, straight.ny
+    carried.share = ex * straight.nx + ey * straight.ny
+    carried.turn = 1.0 if straight.nx * ey > straight.ny * ex else -1.0
+    approach = (curve.ux - straight.ux) * straight.nx + (curve.uy - straight.uy) * straight.ny
+    carried.rate, carried.least = -approach / curve.radius, 1.0
+    carried.face, carried.arc = straight.face, curve.arc
+    carried.end = _first_end(state, w, k, facing, curve.part >= 0, holds)
+    motion = carried_of(carried)
+    carried.least = min(abs(carried_direction(motion, 0.0)[1]), abs(carried_direction(motion, carried.end)[1]))
+    ball.ax, ball.ay = carried_acceleration(motion, carried_direction(motion, 0.0)[1])
+
+
+@function
+def _first_end(state: State, w: int, k: int, facing: float, moves: bool, holds: bool) -> float:
+    """Return after how long [s] a ball is carried no further: what presses it ends, the part stops, or its round ends.
+
+    facing: 1.0 outside of the circle, -1.0 inside; moves: whether the circle does, or the straight surface.
+    """
+    ball, carried = state.balls[w, k], carried_of(state.carried[w, k])
+    part = moving_part(state, w, ball.rides)
+    stop_hi, stop_lo = part_stop_instant(part.motion, part.shape)
+    whole = (math.copysign(1.0, carried.rate) - carried.share) / carried.rate
+    whole = min(whole, since(stop_hi, stop_lo, ball.hi, ball.lo))
+    whole = min(whole, _time_to_joints(state, w, k, carried, moves))
+    low, high = 0.0, whole
+    for n in range(1, PIECES):
+        t = whole * (n / PIECES)
+        if not _press(ball, state, w, k, facing, moves, holds, t) > 0.0:
+            high = t
+            break
+        low = t
+    if high == whole and _press(ball, state, w, k, facing, moves, holds, whole) > 0.0:
+        return whole
+    for _ in range(BRACKETING_STEPS):
+        t = 0.5 * (low + high)
+        if not low < t < high:
+            break
+        if _press(ball, state, w, k, facing, moves, holds, t) > 0.0:
+            low = t
+        else:
+            high = t
+    return low
+
+
+@routine
+def _press(ball: Record, state: State, w: int, k: int, facing: float, moves: bool, holds: bool, t: float) -> float:
+    """Return what is > 0 as long as both surfaces press the ball `t` seconds on."""
+    row, carried = state.carried[w, k], carried_of(state.carried[w, k])
+    share, across = carried_direction(carried, t)
+    ex, ey = share * carried.mx - across * carried.my, share * carried.my + across * carried.mx
+    if across == 0.0:
+        return -1.0
+    if holds:
+        if moves:
+            towards = facing * (ex * carried.ux + ey * carried.uy)
+            return min(towards, -(ball.gx * carried.mx + ball.gy * carried.my))
+        speed = carried.rate / across
+        held = -facing * (ball.gx * ex + ball.gy * ey + carried.radius * speed * speed)
+        return min(row.sx * carried.mx + row.sy * carried.my, held)
+    ax, ay = carried_acceleration(carried, across)
+    ax, ay = ax - ball.gx, ay - ball.gy
+    of_curve = (ay * carried.mx - ax * carried.my) / (facing * across)
+    return min(of_curve, ax * carried.mx + ay * carried.my - of_curve * facing * share)
+
+
+@function
+def _time_to_joints(state: State, w: int, k: int, carried: Carried, moves: bool) -> float:
+    """Return after how long [s] a ball comes to where the round end of a part, or an arc, ends; inf if it does not."""
+    if moves:
+        ball = state.balls[w, k]
+        core = part_core_at(moving_part(state, w, ball.rides), ball.hi, ball.lo)
+        if core.back == core.front:
+            return math.inf
+        one = _time_to_direction(carried, -core.uy, core.ux)
+        return min(one, _time_to_direction(carried, core.uy, -core.ux))
+    return _time_to_arc_ends(state, w, k, carried)
+
+
+@where("arcs", otherwise=math.inf)
+def _time_to_arc_ends(state: State, w: int, k: int, carried: Carried) -> float:
+    if state.carried[w, k].arc < 0:
+        return math.inf
+    arc = state.arcs[state.worlds[w].scene, state.carried[w, k].arc]
+    return min(_time_to_direction(carried, arc.sx, arc.sy), _time_to_direction(carried, arc.ex, arc.ey))
+
+
+@function
+def _time_to_direction(carried: Carried, x: float, y: float) -> float:
+    """Return after how long [s] e points in the direction (x, y), or inf; where it does so now is behind it."""
+    t = (x * carried.mx + y * carried.my - carried.share) / carried.rate
+    ahead = carried.turn * (carried.mx * y - carried.my * x) > 0.0 and t * abs(carried.rate) > ALIGNED
+    return t if ahead else math.inf
 
 
 @function

@@ -2,14 +2,11 @@
 
 from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.restitution import (
-    along_speed,
     bounce,
     capped,
-    is_holding,
     is_soft,
     is_standing,
     normal_load,
-    rolling_speed,
 )
 from bounce_env.engine.memory.ledger import Surface, append_contact, count_hit
 from bounce_env.engine.memory.records import BOUNCE, CORNER_BOUNCE
@@ -81,31 +78,9 @@ def _softened_bounce(
     pressed_by_gravity = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
     if pressed_by_gravity and closing < head.rest_speed:
         return 0.0, (1.0 if f > 0.0 else 0.0)
-    if touch.curvature == 0.0:
-        # Hops that lose nothing have no end, and these show in no place of the ball: it slides.
-        ends = material.b == 1.0 and is_soft(closing, press, head.extent)
-        return (0.0 if ends else rebound), f
-    if touch.part >= 0:
-        return _rolling_bounce(ball, touch, head, material, press, closing, rebound, f)
-    return rebound, f
-
-
-@function
-def _rolling_bounce(
-    ball: Record, touch: Record, head: Record, material: Record, press: float, closing: float, rebound: float, f: float
-) -> tuple[float, float]:
-    """Rebound [m/s] and friction on the round end of a part, on which the ball rolls in small hops."""
-    smallest = rolling_speed(ball, touch, press, head.extent)
-    if closing <= 1.5 * smallest and head.rest_speed > 0.0:
-        return 0.0, (1.0 if f > 0.0 else 0.0)
-    if material.b >= 1.0 or rebound >= smallest or (rebound == 0.0 and is_holding(f, head.rest_speed)):
-        return rebound, f
-    if is_soft(closing, press, head.extent):
-        return 0.0, f
-    if material.b < 1.0 and abs(along_speed(ball, touch)) <= 2.0 * smallest:
-        # Slow on the curve: let the bounces die away, so that a ball between several surfaces comes to touch them.
-        smallest = min(smallest, 0.5 * closing)
-    return max(rebound, smallest), f
+    # Hops that lose nothing have no end, and these show in no place of the ball: it slides.
+    ends = touch.curvature == 0.0 and material.b == 1.0 and is_soft(closing, press, head.extent)
+    return (0.0 if ends else rebound), f
 
 
 @where("cooling", otherwise=True)

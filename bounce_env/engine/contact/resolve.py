@@ -10,24 +10,25 @@ from bounce_env.engine.compile.jit import Record, Table, function
 from bounce_env.engine.contact.bounces import GOES_ON, bounce_from_all, take_soft
 from bounce_env.engine.contact.cluster import resolve_cluster
 from bounce_env.engine.contact.hits import count_bounce, surface_of
-from bounce_env.engine.contact.hops import hop_on
 from bounce_env.engine.contact.resting import bear, find_contact, is_slow
 from bounce_env.engine.contact.restitution import (
     along_speed,
     closing_speed,
+    is_sliding_curve,
     is_soft,
-    is_standing_curve,
     normal_load,
     push_off,
     slow_speed,
     surface_speed,
 )
 from bounce_env.engine.contact.sides import update_crossing_sides
+from bounce_env.engine.contact.smallest_rebound import leave_part
 from bounce_env.engine.contact.touching import collect_touches, keep_outside_touched
 from bounce_env.engine.detect.pairs import is_pressed_by_balls, plan_pairs
 from bounce_env.engine.detect.schedule import schedule_resolve, schedule_rest, schedule_standing
 from bounce_env.engine.memory.ledger import Surface, append_contact
 from bounce_env.engine.memory.records import (
+    CARRIED_ALONG,
     CONTACT_BEGINS,
     CONTACT_ENDS,
     CRUSHED,
@@ -155,9 +156,10 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
     _resolve_release(ball)
     if state.gravity is not None or state.arcs is not None:
         # Told at once of a hit of something that it does not close on, a ball that rides on a part, or slides into one,
-        # would be so for ever: it hops off.
+        # would be so for ever: it leaves with the smallest rebound.
         slides_in = (contact >= 0 or contact == ON_CURVE) and ball.next_kind == NEXT_PART
-        again = (contact == RIDING or slides_in) and at_once and state.worlds[w].bounces == bounces
+        rides = contact in (RIDING, CARRIED_ALONG)
+        again = (rides or slides_in) and at_once and state.worlds[w].bounces == bounces
         vx, vy = ball.vx, ball.vy
         _end_hops_on_curves(state, w, k)
         i = _resolve_contact(state, w, k, contact, support, again, vx0, vy0, ledger)
@@ -166,8 +168,10 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
         corner = corner if i < 0 else -1
     if corner >= 0:
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
-    if ball.contact == FLYING:
-        hop_on(state, w, k, at_once, bounces, ledger)
+    # Where something closes on it, a ball without room is bounced from a corner at once, for ever.
+    met_nothing = state.worlds[w].bounces == bounces or ball.confined > BOUNCES_BEFORE_STANDING
+    if ball.contact == FLYING and at_once and met_nothing:
+        leave_part(state, w, k, ledger)
     update_crossing_sides(state, w, k)
     vx, vy, duration = ball.vx, ball.vy, -1.0
     if state.gravity is not None and single >= 0 and ball.contact == FLYING:
@@ -193,7 +197,7 @@ def _end_hops_on_curves(state: State, w: int, k: int) -> None:
     for i in range(ball.touched):
         touch = state.touches[w, i]
         material, leaving, press = state.elements[scene, touch.element], -closing_speed(ball, touch), 0.0
-        if is_standing_curve(touch) and leaving > slow_speed(ball, touch):
+        if is_sliding_curve(touch) and leaving > slow_speed(ball, touch):
             press = normal_load(ball, touch)
         if press > 0.0 and is_soft(leaving, press, head.extent):
             way = abs(along_speed(ball, touch)) * 2.0 * leaving / press

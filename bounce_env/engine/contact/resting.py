@@ -1,7 +1,7 @@
 """What bears a ball after its bounces at one instant: a surface on which it rests, or slides.
 
 A contact is a constraint, not a series of tiny bounces. On a wall, and on a part in its frame, the ball slides in
-closed form under the tangential part of its acceleration; on a circle or arc that stands, like a pendulum.
+closed form under the tangential part of its acceleration; on a circle or arc, in its frame, like a pendulum.
 """
 
 import math
@@ -13,8 +13,8 @@ from bounce_env.engine.contact.restitution import (
     closing_speed,
     gap_trend,
     is_holding,
+    is_sliding_curve,
     is_standing,
-    is_standing_curve,
     load_noise,
     normal_load,
     slow_speed,
@@ -40,17 +40,16 @@ def find_contact(state: State, w: int, k: int) -> int:
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
     head = state.scenes[scene]
+    i = carry(state, w, k)
+    if i >= 0:
+        return i
     for i in range(ball.touched):
         touch = state.touches[w, i]
         if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or not _is_pressed(ball, touch):
             continue
-        f = state.elements[scene, touch.element].f
-        holds = is_holding(f, head.rest_speed)
-        if carry(state, w, k, i, holds):
-            return i
         if not _lets_hold(ball, state.touches, w, i):
             continue
-        if holds:
+        if is_holding(state.elements[scene, touch.element].f, head.rest_speed):
             return _stop_by_friction(ball, touch, i)
         if _is_balanced_on_curve(ball, touch):
             return _hold(ball, touch, i)
@@ -67,7 +66,7 @@ def find_contact(state: State, w: int, k: int) -> int:
 @function
 def _is_pressed(ball: Record, touch: Record) -> bool:
     """Return whether a touched surface, that the ball does not leave, is to hold it back."""
-    return gap_trend(ball, touch) < 0 if is_standing_curve(touch) else normal_load(ball, touch) > 0.0
+    return gap_trend(ball, touch) < 0 if is_sliding_curve(touch) else normal_load(ball, touch) > 0.0
 
 
 @function
@@ -78,12 +77,12 @@ def _stop_by_friction(ball: Record, touch: Record, i: int) -> int:
     ball moves on to where it would be pressed again.
     """
     off = ball.gx * touch.nx + ball.gy * touch.ny
-    if not (is_standing_curve(touch) and off > load_noise(ball, touch)):
+    if not (is_sliding_curve(touch) and off > load_noise(ball, touch)):
         return _hold(ball, touch, i)
     speed = math.copysign(math.sqrt(off / -touch.curvature), along_speed(ball, touch))
-    ball.vx, ball.vy = -speed * touch.ny, speed * touch.nx
+    ball.vx, ball.vy = touch.ux - speed * touch.ny, touch.uy + speed * touch.nx
     if gap_trend(ball, touch) < 0:
-        ball.vx, ball.vy = 0.0, 0.0
+        ball.vx, ball.vy = touch.ux, touch.uy
     return i
 
 
@@ -94,7 +93,7 @@ def _is_balanced_on_curve(ball: Record, touch: Record) -> bool:
     As far as it swings to and fro, or is off that point, by no more than the tolerance of lengths.
     """
     pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
-    if not is_standing_curve(touch) or pull == 0.0:
+    if not is_sliding_curve(touch) or pull == 0.0:
         return False
     along, across = along_speed(ball, touch), ball.gx * touch.ny - ball.gy * touch.nx
     way = across / pull * touch.radius
@@ -124,7 +123,7 @@ def _hold(ball: Record, touch: Record, i: int) -> int:
 def _carrier(ball: Record, touches: Table, w: int) -> int:
     """Which touched surface holds a ball of next to no speed, alone or with another one; -1 if they do not hold it."""
     for i in range(ball.touched):
-        if not is_standing_curve(touches[w, i]) and _carries_alone(ball, touches[w, i]):
+        if not is_sliding_curve(touches[w, i]) and _carries_alone(ball, touches[w, i]):
             return i
     for i in range(ball.touched):
         for j in range(i):
@@ -159,11 +158,11 @@ def _shares(ball: Record, one: Record, other: Record) -> tuple[float, float]:
 def _slides_on(state: State, w: int, k: int, i: int) -> bool:
     """Let the ball slide along what it touches, if that presses it and the ball stays beside it.
 
-    On a part that slides itself it does so in the part's frame, on a curve only if that stands.
+    On a part that slides itself it does so in the part's frame.
     """
     ball, touch = state.balls[w, k], state.touches[w, i]
-    slow, curved = slow_speed(ball, touch), is_standing_curve(touch)
-    if touch.moves or closing_speed(ball, touch) < -slow or (touch.curvature != 0.0 and not curved):
+    slow, curved = slow_speed(ball, touch), is_sliding_curve(touch)
+    if touch.moves or closing_speed(ball, touch) < -slow:
         return False
     # However little a wall presses it: what is not constrained would sink in by and by.
     if not (gap_trend(ball, touch) < 0 if curved else ball.gx * touch.nx + ball.gy * touch.ny < 0.0):
@@ -199,12 +198,17 @@ def _opens_beside(ball: Record, touch: Record, other: Record, ax: float, ay: flo
 
 @where("curve_slides", inline=False)
 def begin_curve_slide(state: State, w: int, k: int, touch: Record, speed: float) -> None:
-    """Let a ball slide on a curve that it touches at `speed` [m/s] along it, counter-clockwise about it positive."""
+    """Let a ball slide on a curve that it touches at `speed` [m/s] along it, counter-clockwise about it positive.
+
+    Relative to the curve, which stands or translates.
+    """
     ball, slide = state.balls[w, k], state.curve_slides[w, k]
     facing = 1.0 if touch.curvature > 0.0 else -1.0
     nx, ny = facing * touch.nx, facing * touch.ny
     ball.x, ball.y = touch.cx + touch.radius * nx, touch.cy + touch.radius * ny
-    motion = new_curve_slide(touch.cx, touch.cy, touch.radius, nx, ny, facing * speed, ball.gx, ball.gy)
+    motion = new_curve_slide(
+        touch.cx, touch.cy, touch.radius, nx, ny, facing * speed, ball.gx, ball.gy, touch.ux, touch.uy
+    )
     slide.x, slide.y, slide.radius, slide.down_x, slide.down_y = (
         touch.cx,
         touch.cy,
@@ -214,16 +218,17 @@ def begin_curve_slide(state: State, w: int, k: int, touch: Record, speed: float)
     )
     slide.sense, slide.swings, slide.complement = motion.sense, int(motion.swings), motion.complement
     slide.lowest_speed = motion.lowest_speed
-    slide.rate, slide.phase, slide.facing, slide.arc = motion.rate, motion.phase, facing, touch.arc
+    slide.rate, slide.phase, slide.ux, slide.uy = motion.rate, motion.phase, motion.ux, motion.uy
+    slide.facing, slide.arc = facing, touch.arc
 
 
 @function
 def bear(ball: Record, touch: Record) -> None:
     """Let a ball be in contact with what it touches: with a straight side or a curve that it slides along."""
-    if touch.part >= 0:
-        ball.contact = RIDING
-    elif touch.curvature != 0.0:
+    if touch.curvature != 0.0:
         ball.contact = ON_CURVE
+    elif touch.part >= 0:
+        ball.contact = RIDING
     else:
         ball.contact = touch.face
     ball.rides, ball.support = touch.part, touch.element

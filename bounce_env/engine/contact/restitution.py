@@ -7,7 +7,7 @@ tutorial's reflection in the frame of the surface (docs/physics.md, "Bounce law"
 import math
 
 from bounce_env.engine.compile.jit import Record, function
-from bounce_env.engine.tolerances import PRESSING, ROLLING, ULP, ULPS_OF_LENGTH, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import PRESSING, ULP, ULPS_OF_LENGTH, ULPS_OF_SPEED
 
 
 @function
@@ -94,9 +94,9 @@ def is_standing(touch: Record) -> bool:
 
 
 @function
-def is_standing_curve(touch: Record) -> bool:
-    """Return whether a touched surface is a circle or arc that belongs to no part."""
-    return touch.curvature != 0.0 and touch.part < 0
+def is_sliding_curve(touch: Record) -> bool:
+    """Return whether a ball slides on a touched surface as on a circle: it is one, and stands or translates."""
+    return touch.curvature != 0.0 and not touch.moves
 
 
 @function
@@ -159,19 +159,6 @@ def is_soft(closing: float, press: float, extent: float) -> bool:
 def soft_speed(press: float, extent: float) -> float:
     """Return the speed [m/s] of a hop that rises by the tolerance of lengths."""
     return math.sqrt(2.0 * press * (ULPS_OF_LENGTH * extent))
-
-
-@function
-def rolling_speed(ball: Record, touch: Record, press: float, extent: float) -> float:
-    """Return the speed [m/s] of the small hops in which a ball rolls on the round end of a part.
-
-    A share of the speed at which it would let go of it; for a slow ball less, so that one between several surfaces
-    comes down to rest.
-    """
-    return min(
-        ROLLING * math.sqrt(press / abs(touch.curvature)),
-        max(0.5 * abs(along_speed(ball, touch)), 4.0 * soft_speed(press, extent)),
-    )
 
 
 @function

@@ -22,7 +22,7 @@ from bounce_env.engine.motion.parts import (
     part_spin,
     part_surface_velocity,
 )
-from bounce_env.engine.tolerances import CLUSTER_GAP, ROLLING
+from bounce_env.engine.tolerances import CLUSTER_GAP, SMALLEST_REBOUND
 
 
 @function
@@ -187,11 +187,11 @@ def _touch_part(
     )
     pull = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
     rest_speed = state.scenes[state.worlds[w].scene].rest_speed
-    least = max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * offset_radius) * offset_radius))
+    least = max(rest_speed, SMALLEST_REBOUND * math.sqrt((pull + spin * spin * offset_radius) * offset_radius))
     for straight in (True, False):
-        if straight and side == 0 and not core.back < nearest < core.front:
+        if straight and not _touches_straight(ball, core, side, nx, ny, distance):
             continue
-        if not straight and (side != 0 or core.back + ball.tolerance < nearest < core.front - ball.tolerance):
+        if not straight and not _touches_round(ball, core, side, nearest):
             continue
         curvature = 0.0 if straight else 1.0 / shape.offset_radius
         if not _add_touch(state, w, k, nx, ny, distance - shape.offset_radius, curvature, shape.element, -1):
@@ -200,8 +200,24 @@ def _touch_part(
         touch.part, touch.ux, touch.uy, touch.least = m, vx, vy, least
         touch.moves = 1 if moves else 0
         if straight:
+            facing = 1.0 if core.ux * ny > core.uy * nx else -1.0
+            touch.nx, touch.ny = -facing * core.uy, facing * core.ux  # at an end it is that of the round end but nearly
             touch.length = core.front - core.back
-            touch.along = nearest - core.back if core.ux * ny > core.uy * nx else core.front - nearest
+            touch.along = nearest - core.back if facing > 0.0 else core.front - nearest
         else:
             touch.along, touch.length = shape.offset_radius, 2.0 * shape.offset_radius  # it has no ends
+            touch.cx, touch.cy = core.x + nearest * core.ux, core.y + nearest * core.uy
+            touch.radius = shape.offset_radius
     return True
+
+
+@function
+def _touches_straight(ball: Record, core: Core, side: int, nx: float, ny: float, distance: float) -> bool:
+    """Return whether a ball that touches a part with the normal (nx, ny) is beside its core, up to the tolerance."""
+    return side != 0 or (core.back < core.front and abs(nx * core.ux + ny * core.uy) * distance <= ball.tolerance)
+
+
+@function
+def _touches_round(ball: Record, core: Core, side: int, nearest: float) -> bool:
+    """Return whether a ball that touches a part where `nearest` lies on the core is at a round end of it."""
+    return side == 0 and not core.back + ball.tolerance < nearest < core.front - ball.tolerance

@@ -23,11 +23,12 @@ from bounce_env.engine.memory.lookup import is_off, is_one_way, side_on
 from bounce_env.engine.memory.records import CLOSED, OFF_CURVE, ON_ARC, ON_CIRCLE, ON_FACE, ON_JOINT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.curve_slide import CurveSlide, curve_slide_of, direction_from_lowest, half_angle
+from bounce_env.engine.motion.parts import moving_part, part_core_at
 from bounce_env.engine.tolerances import ULPS_OF_SPEED
 
 
 class Search(NamedTuple):
-    """A slide, where it begins, and the ball there: place and velocity from the centre [m, m/s], tolerance [m]."""
+    """A slide, where it begins, the ball there: place and velocity relative to the centre [m, m/s], tolerance [m]."""
 
     slide: CurveSlide
     start: CurveStart
@@ -55,19 +56,31 @@ def curve_search(state: State, w: int, k: int) -> Search:
     ball, slide = state.balls[w, k], curve_slide_of(state.curve_slides[w, k])
     x, y = ball.x - slide.x, ball.y - slide.y
     start = curve_start(slide, x / slide.radius, y / slide.radius)
-    return Search(slide, start, x, y, ball.vx, ball.vy, ball.tolerance)
+    return Search(slide, start, x, y, ball.vx - slide.ux, ball.vy - slide.uy, ball.tolerance)
 
 
 @routine
 def first_along_curve(state: State, w: int, k: int) -> tuple[float, int, int]:
     """Return what ends a ball's slide on a curve first: (duration [s], kind, row); inf where nothing does."""
     search = curve_search(state, w, k)
-    first = Found(math.inf, 0.0, 1.0, True, OFF_CURVE, -1)
-    first = _let_go(state, w, k, search, first)
+    first = first_of_itself(state, w, k, search)
     first = _first_face_along(state, w, k, search, first)
     first = _first_circle_along(state, w, k, search, first)
     first = _first_arc_along(state, w, k, search, first)
-    return waypoint_time(search.slide, Waypoint(first.order, first.s, first.c, first.forth)), first.kind, first.row
+    return found_after(search, first), first.kind, first.row
+
+
+@routine
+def found_after(search: Search, found: Found) -> float:
+    """Return after how long [s] a slide comes to what was found."""
+    return waypoint_time(search.slide, Waypoint(found.order, found.s, found.c, found.forth))
+
+
+@routine
+def first_of_itself(state: State, w: int, k: int, search: Search) -> Found:
+    """Return where a slide ends if nothing stands in its way: the curve lets go, or a part's straight side begins."""
+    first = _let_go(state, w, k, search, Found(math.inf, 0.0, 1.0, True, OFF_CURVE, -1))
+    return _joints_of_part(state, w, k, search, first)
 
 
 @routine
@@ -123,6 +136,19 @@ def _closes(search: Search, rate: float, curvature: float) -> bool:
 
 
 def _nothing_along(state: State, w: int, k: int, search: Search, first: Found) -> Found:
+    return first
+
+
+@where("parts", otherwise=_nothing_along)
+def _joints_of_part(state: State, w: int, k: int, search: Search, first: Found) -> Found:
+    """Look for where the round end of a part that carries the ball goes on into its straight sides."""
+    ball = state.balls[w, k]
+    if ball.rides < 0:
+        return first
+    core = part_core_at(moving_part(state, w, ball.rides), ball.hi, ball.lo)
+    if core.back < core.front:
+        for facing in (search.slide.radius, -search.slide.radius):
+            first = _joint_along(search, first, -facing * core.uy, facing * core.ux)
     return first
 
 

@@ -13,7 +13,7 @@ from bounce_env.engine.memory.records import OUT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import Flight, acceleration_magnitude, flight_after, flight_of, flight_rounding
 from bounce_env.engine.motion.instant import before, later, since
-from bounce_env.engine.motion.path import is_on_curve
+from bounce_env.engine.motion.path import is_bent
 from bounce_env.engine.tolerances import (
     MEETINGS_WITHOUT_ROOM,
     PRESSING,
@@ -73,7 +73,7 @@ def _meeting_of_pair(state: State, w: int, k: int, j: int) -> tuple[float, float
     """Return when balls `k` and `j` hit each other, if both keep to their paths: (hi, lo); inf if they do not."""
     if state.pairs[w, k, j].pressed:  # what is resolved as one needs no search
         return math.inf, 0.0
-    if (is_on_curve(state, w, k) or is_on_curve(state, w, j)) and OUT not in (
+    if (is_bent(state, w, k) or is_bent(state, w, j)) and OUT not in (
         state.balls[w, k].status, state.balls[w, j].status,
     ):  # fmt: skip
         return meeting_along_curve(state, w, k, j)

@@ -55,8 +55,8 @@ def meeting_along_curve(state: State, w: int, k: int, j: int) -> tuple[float, fl
         slow = ULPS_OF_SPEED * (abs(of_one[2]) + abs(of_one[3]) + abs(of_other[2]) + abs(of_other[3]))
         if step == 0 and distance - border <= tolerance:
             if abs(rate) <= slow + ULPS_OF_SPEED * math.sqrt(bound * head.ball_radius):
-                ax, ay = acceleration_in(state, w, k, of_one)
-                bx, by = acceleration_in(state, w, j, of_other)
+                ax, ay = acceleration_in(state, w, k, s + after, of_one)
+                bx, by = acceleration_in(state, w, j, t + after, of_other)
                 turn = (vx * vx + vy * vy) / border
                 opens = (x * (ax - bx) + y * (ay - by)) / distance + turn
                 if opens < -2.0 * PRESSING * (bound + turn):

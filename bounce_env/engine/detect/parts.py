@@ -33,7 +33,7 @@ from bounce_env.engine.motion.parts import (
     part_stop_instant,
     part_surface_velocity,
 )
-from bounce_env.engine.motion.path import is_on_curve
+from bounce_env.engine.motion.path import is_bent, is_bent_and_moving, is_on_curve
 from bounce_env.engine.motion.roots import falling_root
 
 # The zone of a part is wider than its reach by this share: it keeps rounding of the border from hiding a hit.
@@ -45,8 +45,9 @@ def plan_part_zones(state: State, w: int, k: int, now: float) -> None:
     """Bring the ball's zones up to `now` seconds after its last event, and set when the next of them changes.
 
     The zone of a part is where it can be met: of one that slides the strip along its rail, of one that turns the circle
-    about its pivot, of a dragged wall everything. It is a static sensor of the engine's own: passing its border neither
-    re-bases the flight nor shows in the ledger.
+    about its pivot, of a dragged wall everything; all is in it while the ball slides on a curve that moves, or is
+    carried. It is a static sensor of the engine's own: passing its border neither re-bases the flight nor shows in the
+    ledger.
     """
     state.balls[w, k].zone_after = math.inf
     _plan_part_zones(state, w, k, now)
@@ -57,7 +58,7 @@ def _plan_part_zones(state: State, w: int, k: int, now: float) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
     for m in range(state.scenes[scene].parts):
         part, zone = moving_part(state, w, m), state.zones[w, k, m]
-        if is_dragged_part(part):
+        if is_dragged_part(part) or is_bent_and_moving(state, w, k):
             zone.inside, zone.after = 1, math.inf
             continue
         if now == 0.0:
@@ -165,7 +166,7 @@ def _meet_part(state: State, w: int, k: int, m: int, side: int, leaves_after: fl
     side: on which side of a dragged wall a ball of no radius is while it touches it, otherwise 0.
     leaves_after: duration [s] after which, from its last event, the ball is out of the part's reach.
     """
-    if is_on_curve(state, w, k):
+    if is_bent(state, w, k):
         return meet_part_along_curve(state, w, k, m, side, leaves_after)
     return _meet_part_in_flight(state, w, k, m, side, leaves_after)
 

@@ -9,7 +9,9 @@ import math
 
 from bounce_env.engine.compile.jit import Record, function, routine, where
 from bounce_env.engine.detect.along_curve import first_along_curve
+from bounce_env.engine.detect.by_advancement import first_by_advancement
 from bounce_env.engine.detect.crossings_along_curve import next_crossing_along
+from bounce_env.engine.detect.crossings_by_advancement import next_crossing_by_advancement
 from bounce_env.engine.detect.parts import plan_part_hits, plan_part_zones, way_off_part
 from bounce_env.engine.detect.sensors import Crossing, next_crossing
 from bounce_env.engine.detect.surfaces import (
@@ -38,7 +40,7 @@ from bounce_env.engine.memory.records import (
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of, flight_time_in_scene
 from bounce_env.engine.motion.instant import before, later
-from bounce_env.engine.motion.path import is_on_curve
+from bounce_env.engine.motion.path import is_bent, is_bent_and_moving
 
 
 @routine
@@ -61,10 +63,17 @@ def _following_crossing_in_flight(state: State, w: int, k: int, last: Crossing) 
     return next_crossing(state, w, k, flight_of(state, state.balls[w, k]), last)
 
 
+@where("carried", otherwise=next_crossing_along)
+def _following_crossing_off_flights(state: State, w: int, k: int, last: Crossing) -> Crossing:
+    if is_bent_and_moving(state, w, k):
+        return next_crossing_by_advancement(state, w, k, last)
+    return next_crossing_along(state, w, k, last)
+
+
 @where("curve_slides", otherwise=_following_crossing_in_flight)
 def _following_crossing(state: State, w: int, k: int, last: Crossing) -> Crossing:
-    if is_on_curve(state, w, k):
-        return next_crossing_along(state, w, k, last)
+    if is_bent(state, w, k):
+        return _following_crossing_off_flights(state, w, k, last)
     return _following_crossing_in_flight(state, w, k, last)
 
 
@@ -108,13 +117,27 @@ def _schedule_standing_in_flight(state: State, w: int, k: int) -> None:
     ball.hit_after = after if met else math.inf
 
 
+@function
+def _schedule_along_standing_curve(state: State, w: int, k: int) -> None:
+    ball = state.balls[w, k]
+    ball.hit_after, ball.hit_kind, ball.hit_index = first_along_curve(state, w, k)
+    ball.end_after = ball.hit_after
+
+
+@where("carried", otherwise=_schedule_along_standing_curve)
+def _schedule_standing_off_flights(state: State, w: int, k: int) -> None:
+    ball = state.balls[w, k]
+    if is_bent_and_moving(state, w, k):
+        ball.hit_after, ball.end_after, ball.hit_kind, ball.hit_index = first_by_advancement(state, w, k)
+    else:
+        _schedule_along_standing_curve(state, w, k)
+
+
 @where("curve_slides", otherwise=_schedule_standing_in_flight)
 def schedule_standing(state: State, w: int, k: int) -> None:
     """Search everything that stands: what ends the flight or slide that begins now, and when."""
-    if is_on_curve(state, w, k):
-        ball = state.balls[w, k]
-        ball.hit_after, ball.hit_kind, ball.hit_index = first_along_curve(state, w, k)
-        ball.end_after = ball.hit_after
+    if is_bent(state, w, k):
+        _schedule_standing_off_flights(state, w, k)
     else:
         _schedule_standing_in_flight(state, w, k)
 

@@ -69,7 +69,7 @@ BALL = record(
     next_hi="f8", next_lo="f8", next_kind="i8",  # the ball's next event
     status="i8",
     gx="f8", gy="f8",  # acceleration: gravity and fields
-    contact="i8",  # the face that the ball slides on, FLYING, HELD, RIDING, ON_CURVE or ON_BALLS
+    contact="i8",  # the face that the ball slides on, FLYING, HELD, RIDING, ON_CURVE ...
     rides="i8",  # the part that carries it, sliding or held; otherwise -1
     support="i8",  # the element that it is in contact with, -1 in free flight
     settling="i8",  # SETTLES while the last bounces before a contact are summed, JAMMED, LEANS on balls, or 0
@@ -88,14 +88,22 @@ BALL = record(
 CURVE_SLIDE = record(  # of a ball that slides on a circle or an arc, see `motion.curve_slide`
     x="f8", y="f8", radius="f8", down_x="f8", down_y="f8",
     sense="f8", swings="i8", complement="f8", lowest_speed="f8", rate="f8", phase="f8",
+    ux="f8", uy="f8",  # [m/s] velocity of the curve
     facing="f8", arc="i8",  # 1.0 outside, -1.0 inside; the arc, or -1 of a circle
+)  # fmt: skip
+CARRIED = record(  # of a ball between a straight surface and a round one that pass by each other, see `motion.carried`
+    x="f8", y="f8", ux="f8", uy="f8", radius="f8", mx="f8", my="f8",
+    share="f8", rate="f8", turn="f8", least="f8",
+    end="f8",  # [s] when one of the two no longer presses it, or ends
+    sx="f8", sy="f8",  # [m/s] velocity of the straight one
+    face="i8", arc="i8",  # the face and the arc of which they are; otherwise -1
 )  # fmt: skip
 TOUCH = record(
     nx="f8", ny="f8", ux="f8", uy="f8",  # unit normal to the ball, velocity of the surface [m/s]
     gap="f8",  # [m] to it: next to nothing, but for rounding
     curvature="f8",  # [1/m] curvature: 0 of a wall, > 0 where the ball is outside of a circle, < 0 inside
     along="f8", length="f8",  # [m] where on it the ball is, with the normal on its left; of an arc the ways to its ends
-    cx="f8", cy="f8", radius="f8", arc="i8",  # of a curve that stands: centre [m], that of the path [m], the arc or -1
+    cx="f8", cy="f8", radius="f8", arc="i8",  # of a curve: centre [m], radius of the path about it [m], the arc or -1
     least="f8",  # [m/s] the smallest rebound from a part, where there is one
     moves="i8",  # 1 of a part that turns or stretches: there is no closed form for a contact with it
     element="i8", face="i8", part="i8",  # the face of a wall's straight part, the part; otherwise -1
@@ -201,9 +209,9 @@ LINE_SENSOR, CIRCLE_ENTRY, FIELD_BORDER = 0, 1, 2
 # Spans of arcs: 2 pi, up to pi, more.
 CLOSED, MINOR, MAJOR = 0, 1, 2
 
-# `contact` of a ball that is in flight, of one that rests, of one that slides on a part, on a circle or arc, and of one
-# that other balls bear, and no straight surface.
-FLYING, HELD, RIDING, ON_CURVE, ON_BALLS = -1, -2, -3, -4, -5
+# `contact` of a ball that is in flight, of one that rests, of one that slides on a part, on a circle or arc, of one
+# that other balls bear, and no straight surface, and of one that a straight surface and a round one carry between them.
+FLYING, HELD, RIDING, ON_CURVE, ON_BALLS, CARRIED_ALONG = -1, -2, -3, -4, -5, -6
 
 # `settling`
 SETTLES, JAMMED, LEANS = 1, 2, 3

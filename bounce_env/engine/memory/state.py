@@ -13,6 +13,7 @@ from bounce_env.engine.compile.jit import Table
 from bounce_env.engine.memory.records import (
     ACTIVE,
     BALL,
+    CARRIED,
     CONTACT,
     CONTACTS_OF_BALL,
     COOLING,
@@ -59,7 +60,8 @@ class State(NamedTuple):
     sensor_sides: Table  # (worlds, balls, sensors) int8
     circle_sensor_sides: Table  # (worlds, balls, rings) int8: 1 outside, -1 inside
     field_edge_sides: Table  # (worlds, balls, edges) int8: 1 on the field's side
-    curve_slides: Table  # (worlds, balls) CURVE_SLIDE; None where no circle or arc can hold a ball
+    curve_slides: Table  # (worlds, balls) CURVE_SLIDE; None where nothing round can hold a ball
+    carried: Table  # (worlds, balls) CARRIED; None where no part moves by what is round
     pairs: Table  # (worlds, balls, balls) PAIR, by the later and the earlier ball; None for one ball, and points
     touches: Array  # (worlds, TOUCHES) TOUCH: what a ball touches at the instant that is resolved
     members: Table  # (worlds, balls) MEMBER: the balls of the cluster that is resolved; these four None as `pairs`
@@ -93,7 +95,10 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
     """
     parts, drag_limits, elements = tables["parts"], tables["drag_limits"], tables["elements"]
     # Without gravity only the inside of an arc holds a ball.
-    curves = tables["arcs"] is not None or (tables["circles"] is not None and tables["gravity"] is not None)
+    round_ends = parts is not None and bool((parts["offset_radius"] > 0.0).any())
+    curves = tables["arcs"] is not None or (
+        tables["gravity"] is not None and (tables["circles"] is not None or round_ends)
+    )
     meet = not point and balls > 1
 
     def sides(table: Table) -> Array | None:
@@ -113,6 +118,7 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
         circle_sensor_sides=sides(tables["circle_sensors"]),
         field_edge_sides=sides(tables["field_edges"]),
         curve_slides=np.zeros((worlds, balls), CURVE_SLIDE) if curves else None,
+        carried=np.zeros((worlds, balls), CARRIED) if curves and parts is not None else None,
         pairs=np.zeros((worlds, balls, balls), PAIR) if meet else None,
         touches=np.zeros((worlds, TOUCHES), TOUCH),
         members=np.zeros((worlds, balls), MEMBER) if meet else None,

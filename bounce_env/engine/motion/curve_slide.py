@@ -14,9 +14,9 @@ from bounce_env.engine.motion.elliptic import carlson_rf, jacobi_sn_cn_dn, quart
 
 
 class CurveSlide(NamedTuple):
-    """A slide on a circle about (x, y) [m]: the columns of `CURVE_SLIDE` that tell of its motion."""
+    """A slide on a circle: the columns of `CURVE_SLIDE` that tell of its motion, in the frame of the circle."""
 
-    x: float
+    x: float  # [m] the circle's centre, when it began
     y: float
     radius: float  # [m] of the path
     down_x: float  # unit vector from the centre to the lowest point
@@ -27,6 +27,8 @@ class CurveSlide(NamedTuple):
     lowest_speed: float  # [m/s] that it has, or would have, in the lowest point
     rate: float  # [1/s] of the phase u
     phase: float  # u when it began
+    ux: float  # [m/s] velocity of the circle
+    uy: float
 
 
 @function
@@ -34,7 +36,7 @@ def curve_slide_of(slide: Record) -> CurveSlide:
     """Return the motion that a row of `CURVE_SLIDE` holds."""
     return CurveSlide(
         slide.x, slide.y, slide.radius, slide.down_x, slide.down_y, slide.sense, slide.swings != 0, slide.complement,
-        slide.lowest_speed, slide.rate, slide.phase,
+        slide.lowest_speed, slide.rate, slide.phase, slide.ux, slide.uy,
     )  # fmt: skip
 
 
@@ -64,16 +66,16 @@ def direction_from_lowest(slide: CurveSlide, s: float, c: float) -> tuple[float,
 
 @routine
 def new_curve_slide(
-    x: float, y: float, radius: float, nx: float, ny: float, speed: float, gx: float, gy: float
+    x: float, y: float, radius: float, nx: float, ny: float, speed: float, gx: float, gy: float, ux: float, uy: float
 ) -> CurveSlide:
     """Return the slide on a circle about (x, y) that begins in the direction (nx, ny) from there at `speed` [m/s].
 
-    speed: counter-clockwise positive. (gx, gy): acceleration of gravity and fields [m/s^2]. Either is not 0, and the
-    ball does not stand on the highest point.
+    speed: relative to the circle, counter-clockwise positive. (gx, gy): acceleration of gravity and fields [m/s^2].
+    Either is not 0, and the ball does not stand on the highest point. (ux, uy): velocity of the circle [m/s].
     """
     pull = math.sqrt(gx * gx + gy * gy)
     down_x, down_y = (gx / pull, gy / pull) if pull > 0.0 else (nx, ny)
-    slide = CurveSlide(x, y, radius, down_x, down_y, 1.0, False, 1.0, 0.0, 0.0, 0.0)
+    slide = CurveSlide(x, y, radius, down_x, down_y, 1.0, False, 1.0, 0.0, 0.0, 0.0, ux, uy)
     s, c = half_angle_from_lowest(slide, nx, ny)
     to_top = 4.0 * pull * radius  # the square of the speed that it takes from the lowest to the highest point
     square = speed * speed + to_top * s * s
@@ -86,9 +88,9 @@ def new_curve_slide(
         complement, rate = max(at_top / square, _LEAST_COMPLEMENT), 0.5 * lowest_speed / radius
     # A ball that stands in a turning point on the right will go on clockwise.
     sense = 1.0 if speed > 0.0 or (speed == 0.0 and s < 0.0) else -1.0
-    slide = CurveSlide(x, y, radius, down_x, down_y, sense, swings, complement, lowest_speed, rate, 0.0)
+    slide = CurveSlide(x, y, radius, down_x, down_y, sense, swings, complement, lowest_speed, rate, 0.0, ux, uy)
     phase = _phase_at(slide, s, c, speed * speed / square)
-    return CurveSlide(x, y, radius, down_x, down_y, sense, swings, complement, lowest_speed, rate, phase)
+    return CurveSlide(x, y, radius, down_x, down_y, sense, swings, complement, lowest_speed, rate, phase, ux, uy)
 
 
 # On the separatrix a ball needs infinitely long to the top; next to it this keeps its phase finite.
@@ -141,7 +143,14 @@ def curve_slide_after(slide: CurveSlide, t: float) -> tuple[float, float, float,
         s, c, speed = sn * largest_half_angle_sine(slide), dn, cn
     s, speed = slide.sense * s, slide.sense * slide.lowest_speed * speed
     nx, ny = direction_from_lowest(slide, s, c)
-    return slide.x + slide.radius * nx, slide.y + slide.radius * ny, -speed * ny, speed * nx
+    x, y = slide.x + slide.ux * t, slide.y + slide.uy * t
+    return x + slide.radius * nx, y + slide.radius * ny, slide.ux - speed * ny, slide.uy + speed * nx
+
+
+@function
+def curve_slide_top_speed(slide: CurveSlide) -> float:
+    """Return a speed [m/s] that a slide does not exceed."""
+    return slide.lowest_speed + math.sqrt(slide.ux * slide.ux + slide.uy * slide.uy)
 
 
 @function

@@ -1,0 +1,45 @@
+"""The smallest rebound: how a ball goes on along what turns or stretches, where a contact has no closed form."""
+
+from bounce_env.engine.compile.jit import Table, function, where
+from bounce_env.engine.contact.bounces import fastest_closing
+from bounce_env.engine.contact.hits import count_bounce
+from bounce_env.engine.contact.restitution import closing_speed, push_off, slow_speed, surface_speed
+from bounce_env.engine.memory.state import State
+
+
+@where("parts")
+def leave_part(state: State, w: int, k: int, ledger: Table) -> None:
+    """Let a ball leave the fastest part that it touches and does not leave already, with the smallest rebound.
+
+    Between a part that moves and something else it may be pressed on both and close on neither. What it leaves already
+    is not what it was told of.
+    """
+    ball, index = state.balls[w, k], -1
+    for i in range(ball.touched):
+        touch = state.touches[w, i]
+        leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
+        if (
+            touch.part >= 0
+            and not leaving
+            and (index < 0 or surface_speed(touch) > surface_speed(state.touches[w, index]))
+        ):
+            index = i
+    if index < 0:
+        return
+    touch = state.touches[w, index]
+    vx0, vy0 = ball.vx, ball.vy
+    # Without gravity there is no smallest rebound, but rounding, which had told it of the hit.
+    push_off(ball, touch, max(touch.least, 2.0 * slow_speed(ball, touch)))
+    count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    _keep_off(state, w, k, ledger)
+
+
+@function
+def _keep_off(state: State, w: int, k: int, ledger: Table) -> None:
+    """After a smallest rebound: let the ball leave along what that closes on."""
+    ball = state.balls[w, k]
+    other, closing = fastest_closing(ball, state.touches, w, 0.0)
+    if other >= 0:
+        touch, vx0, vy0 = state.touches[w, other], ball.vx, ball.vy
+        push_off(ball, touch, closing)
+        count_bounce(state, w, k, touch, vx0, vy0, ledger)

@@ -1,0 +1,122 @@
+"""What the centre of a ball crosses without bouncing on a path that is no flight, and lies on what moves.
+
+As `detect.sensors` for flights, by bounded-acceleration advancement.
+"""
+
+import math
+
+from bounce_env.engine.compile.jit import Record, function, routine, where
+from bounce_env.engine.detect.by_advancement import Moving, gap_ahead, least_step, moving_after, way_beside
+from bounce_env.engine.detect.sensors import Crossing, follows_crossing
+from bounce_env.engine.impact.line import Line, is_beside_line
+from bounce_env.engine.memory.records import CIRCLE_ENTRY, FIELD_BORDER, LINE_SENSOR
+from bounce_env.engine.memory.state import State
+from bounce_env.engine.tolerances import SEARCH_STEPS, ULP, ULPS_OF_SPEED
+
+
+@routine
+def next_crossing_by_advancement(state: State, w: int, k: int, last: Crossing) -> Crossing:
+    """Return the earliest crossing later than `last`, up to the end of the search for what ends the slide."""
+    best = Crossing(math.inf, LINE_SENSOR, -1)
+    best = _first_line(state, w, k, last, best)
+    best = _first_entry(state, w, k, last, best)
+    return _first_border(state, w, k, last, best)
+
+
+def _no_earlier(state: State, w: int, k: int, last: Crossing, best: Crossing) -> Crossing:
+    return best
+
+
+@where("sensors", otherwise=_no_earlier)
+def _first_line(state: State, w: int, k: int, last: Crossing, best: Crossing) -> Crossing:
+    scene = state.worlds[w].scene
+    for i in range(state.scenes[scene].sensors):
+        sensor, side = state.sensors[scene, i], state.sensor_sides[w, k, i]
+        t = _line_crossing(state, w, k, sensor, sensor.length, side, _begin(last, LINE_SENSOR, i))
+        best = _earlier(t, LINE_SENSOR, i, last, best)
+    return best
+
+
+@where("field_edges", otherwise=_no_earlier)
+def _first_border(state: State, w: int, k: int, last: Crossing, best: Crossing) -> Crossing:
+    scene = state.worlds[w].scene
+    for i in range(state.scenes[scene].fields):
+        edge, side = state.field_edges[scene, i], state.field_edge_sides[w, k, i]
+        t = _line_crossing(state, w, k, edge, math.inf, side, _begin(last, FIELD_BORDER, i))
+        best = _earlier(t, FIELD_BORDER, i, last, best)
+    return best
+
+
+@where("circle_sensors", otherwise=_no_earlier)
+def _first_entry(state: State, w: int, k: int, last: Crossing, best: Crossing) -> Crossing:
+    scene = state.worlds[w].scene
+    for i in range(state.scenes[scene].circle_sensors):
+        ring, side = state.circle_sensors[scene, i], state.circle_sensor_sides[w, k, i]
+        t = _circle_entry(state, w, k, ring, side > 0, _begin(last, CIRCLE_ENTRY, i))
+        best = _earlier(t, CIRCLE_ENTRY, i, last, best)
+    return best
+
+
+@function
+def _begin(last: Crossing, kind: int, row: int) -> float:
+    """Return from when on [s] a crossing is searched: a tie with the last one counts where it comes after that."""
+    tie = follows_crossing(last.after, kind, row, last)
+    return max(last.after - abs(last.after) * ULP if tie else last.after, 0.0)
+
+
+@function
+def _earlier(t: float, kind: int, row: int, last: Crossing, best: Crossing) -> Crossing:
+    return Crossing(t, kind, row) if t < best.after and follows_crossing(t, kind, row, last) else best
+
+
+@routine
+def _line_crossing(state: State, w: int, k: int, row: Record, length: float, side: int, begin: float) -> float:
+    """Return when a ball next crosses a line, a row of a table, from `begin` [s] on; inf if it does not."""
+    end, t = state.balls[w, k].end_after, begin
+    line = Line(row.ux, row.uy, length, 0.0)
+    for _ in range(16 * SEARCH_STEPS):
+        ball = moving_after(state, w, k, t)
+        dx, dy = ball.x - row.x, ball.y - row.y
+        height, rate = dy * row.ux - dx * row.uy, ball.vy * row.ux - ball.vx * row.uy
+        facing = math.copysign(1.0, height) if abs(height) > ball.tolerance else float(side)
+        beside = length == math.inf or is_beside_line(line, dx, dy, ball.tolerance)
+        slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
+        seconds, crosses = gap_ahead(ball, facing * height, facing * rate, slow, beside)
+        if not beside:
+            along, speed = dx * row.ux + dy * row.uy, ball.vx * row.ux + ball.vy * row.uy
+            seconds = max(seconds, way_beside(ball, along, speed, length))
+        t += seconds if crosses else max(seconds, least_step(ball))
+        if not t <= end:
+            return math.inf
+        if crosses:
+            return t
+    return math.inf
+
+
+@routine
+def _circle_entry(state: State, w: int, k: int, ring: Record, outside: bool, begin: float) -> float:
+    """Return when a ball next enters a circle, a row of a table, from `begin` [s] on; inf if it does not."""
+    end, t = state.balls[w, k].end_after, begin
+    for _ in range(16 * SEARCH_STEPS):
+        ball = moving_after(state, w, k, t)
+        gap, rate = _gap_of_circle(ball, ball.x - ring.x, ball.y - ring.y, ring.radius)
+        if abs(gap) > ball.tolerance:
+            outside = gap > 0.0
+        slow = (ULPS_OF_SPEED + ball.tolerance / ring.radius) * (abs(ball.vx) + abs(ball.vy))
+        if outside:
+            seconds, enters = gap_ahead(ball, gap, rate, slow, True)
+        else:
+            seconds, enters = max(-gap, 0.0) / ball.top_speed, False
+        t += seconds if enters else max(seconds, least_step(ball))
+        if not t <= end:
+            return math.inf
+        if enters:
+            return t
+    return math.inf
+
+
+@function
+def _gap_of_circle(ball: Moving, dx: float, dy: float, radius: float) -> tuple[float, float]:
+    """Return how far [m] a ball (dx, dy) from a centre is outside of a circle, and how fast that grows [m/s]."""
+    distance = math.sqrt(dx * dx + dy * dy)
+    return distance - radius, (ball.vx * dx + ball.vy * dy) / distance if distance > 0.0 else 0.0

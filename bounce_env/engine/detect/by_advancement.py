@@ -78,7 +78,7 @@ def first_by_advancement(state: State, w: int, k: int) -> tuple[float, float, in
         ahead = _circle_ahead(state, w, k, now, ahead)
         ahead = _arc_ahead(state, w, k, now, ahead)
         ahead = _end_of_straight_ahead(state, w, k, now, t, ahead)
-        t += ahead.seconds if ahead.kind >= 0 else max(ahead.seconds, least_step(now))
+        t += ahead.seconds
         if not t < end:
             return own.seconds if own.seconds <= end else math.inf, end, own.kind, own.row
         if ahead.kind >= 0:
@@ -136,7 +136,8 @@ def gap_ahead(ball: Moving, gap: float, rate: float, slow: float, meets: bool) -
     if gap <= ball.tolerance:
         if meets and rate < -slow:
             return advancement_to_closing(gap, rate, ball.pull), True
-        gap, rate = max(gap, 0.0), max(rate, 0.0)
+        # No step is shorter than that in which a gap changes by what counts as touching.
+        return max(_step(max(gap, 0.0), max(rate, 0.0), ball.pull), least_step(ball)), False
     return _step(gap, rate, ball.pull), False
 
 
@@ -270,4 +271,5 @@ def _arc_ahead(state: State, w: int, k: int, ball: Moving, ahead: Ahead) -> Ahea
 def _way_to_arc_end(ball: Moving, arc: Record, dx: float, dy: float, radius: float) -> float:
     """Return for how long [s] a ball beyond the ends of an arc surely does not come to it."""
     sx, sy, ex, ey = dx - radius * arc.sx, dy - radius * arc.sy, dx - radius * arc.ex, dy - radius * arc.ey
-    return math.sqrt(min(sx * sx + sy * sy, ex * ex + ey * ey)) / ball.top_speed
+    distance = math.sqrt(min(sx * sx + sy * sy, ex * ex + ey * ey))
+    return max(distance, ball.tolerance) / ball.top_speed

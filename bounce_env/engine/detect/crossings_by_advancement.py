@@ -85,7 +85,7 @@ def _line_crossing(state: State, w: int, k: int, row: Record, length: float, sid
         if not beside:
             along, speed = dx * row.ux + dy * row.uy, ball.vx * row.ux + ball.vy * row.uy
             seconds = max(seconds, way_beside(ball, along, speed, length))
-        t += seconds if crosses else max(seconds, least_step(ball))
+        t += seconds
         if not t <= end:
             return math.inf
         if crosses:
@@ -106,8 +106,8 @@ def _circle_entry(state: State, w: int, k: int, ring: Record, outside: bool, beg
         if outside:
             seconds, enters = gap_ahead(ball, gap, rate, slow, True)
         else:
-            seconds, enters = max(-gap, 0.0) / ball.top_speed, False
-        t += seconds if enters else max(seconds, least_step(ball))
+            seconds, enters = max(-gap / ball.top_speed, least_step(ball)), False
+        t += seconds
         if not t <= end:
             return math.inf
         if enters:

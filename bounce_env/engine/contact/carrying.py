@@ -18,7 +18,13 @@ from bounce_env.engine.contact.restitution import (
 )
 from bounce_env.engine.memory.records import CARRIED_ALONG
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.carried import Carried, carried_acceleration, carried_direction, carried_of
+from bounce_env.engine.motion.carried import (
+    Carried,
+    carried_acceleration,
+    carried_direction,
+    carried_of,
+    carried_top_speed,
+)
 from bounce_env.engine.motion.instant import since
 from bounce_env.engine.motion.parts import moving_part, part_core_at, part_stop_instant
 from bounce_env.engine.tolerances import ALIGNED, BRACKETING_STEPS, PRESSING
@@ -61,13 +67,10 @@ def _is_carried_between(state: State, w: int, k: int, i: int, j: int) -> bool:
     ball.vx, ball.vy = ahead_of_both(wall, part, turn)
     straight = (wall.curvature == 0.0 or _stays_on(ball, wall)) and (part.curvature == 0.0 or _stays_on(ball, part))
     if _is_pressed_on_both(ball, wall, part, turn, holds, straight) and _closes_on_no_other(ball, touches, w, i, j):
-        ball.rides, ball.support, ball.ax, ball.ay = part.part, wall.element, 0.0, 0.0
-        if not straight:
-            ball.contact = CARRIED_ALONG
-            _begin(state, w, k, i, j, holds)
+        if straight and wall.face >= 0:
+            ball.contact, ball.rides, ball.support, ball.ax, ball.ay = wall.face, part.part, wall.element, 0.0, 0.0
             return True
-        if wall.face >= 0:
-            ball.contact = wall.face
+        if not straight and _begins(state, w, k, i, j, holds):
             return True
     ball.vx, ball.vy = vx, vy
     return False
@@ -125,9 +128,12 @@ def _closes_on_no_other(ball: Record, touches: Table, w: int, i: int, j: int) ->
     return True
 
 
-@where("carried", inline=False)
-def _begin(state: State, w: int, k: int, i: int, j: int, holds: bool) -> None:
-    """Note how a ball moves between surface `i`, which stands, and part `j`: one is straight, the other round."""
+@where("carried", otherwise=False, inline=False)
+def _begins(state: State, w: int, k: int, i: int, j: int, holds: bool) -> bool:
+    """Note how a ball moves between surface `i`, which stands, and part `j`; return whether it comes any way so.
+
+    One of the two is straight, the other round.
+    """
     ball, carried = state.balls[w, k], state.carried[w, k]
     curve, straight = state.touches[w, i], state.touches[w, j]
     if curve.curvature == 0.0:
@@ -142,33 +148,37 @@ def _begin(state: State, w: int, k: int, i: int, j: int, holds: bool) -> None:
     approach = (curve.ux - straight.ux) * straight.nx + (curve.uy - straight.uy) * straight.ny
     carried.rate, carried.least = -approach / curve.radius, 1.0
     carried.face, carried.arc = straight.face, curve.arc
-    carried.end = _first_end(state, w, k, facing, curve.part >= 0, holds)
+    carried.end, surely = _first_end(state, w, k, state.touches[w, j].part, facing, curve.part >= 0, holds)
     motion = carried_of(carried)
-    carried.least = min(abs(carried_direction(motion, 0.0)[1]), abs(carried_direction(motion, carried.end)[1]))
+    carried.least = min(abs(carried_direction(motion, 0.0)[1]), abs(carried_direction(motion, surely)[1]))
+    if carried_top_speed(motion) * carried.end <= ball.tolerance:
+        return False
+    ball.contact, ball.rides, ball.support = CARRIED_ALONG, state.touches[w, j].part, state.touches[w, i].element
     ball.ax, ball.ay = carried_acceleration(motion, carried_direction(motion, 0.0)[1])
+    return True
 
 
 @function
-def _first_end(state: State, w: int, k: int, facing: float, moves: bool, holds: bool) -> float:
-    """Return after how long [s] a ball is carried no further: what presses it ends, the part stops, or its round ends.
+def _first_end(state: State, w: int, k: int, m: int, facing: float, moves: bool, holds: bool) -> tuple[float, float]:
+    """Return after how long [s] part `m` carries a ball no further, and up to when it surely does.
 
+    What presses it ends, or what is round does. The first is inf where before that the part stops, which ends it, too.
     facing: 1.0 outside of the circle, -1.0 inside; moves: whether the circle does, or the straight surface.
     """
     ball, carried = state.balls[w, k], carried_of(state.carried[w, k])
-    part = moving_part(state, w, ball.rides)
+    part = moving_part(state, w, m)
     stop_hi, stop_lo = part_stop_instant(part.motion, part.shape)
-    whole = (math.copysign(1.0, carried.rate) - carried.share) / carried.rate
-    whole = min(whole, since(stop_hi, stop_lo, ball.hi, ball.lo))
-    whole = min(whole, _time_to_joints(state, w, k, carried, moves))
+    stop = max(since(stop_hi, stop_lo, ball.hi, ball.lo), 0.0)
+    joint = _time_to_joints(state, w, k, m if moves else -1, carried)
+    whole = min(stop, joint, (math.copysign(1.0, carried.rate) - carried.share) / carried.rate)
     low, high = 0.0, whole
-    for n in range(1, PIECES):
-        t = whole * (n / PIECES)
-        if not _press(ball, state, w, k, facing, moves, holds, t) > 0.0:
-            high = t
+    for n in range(1, PIECES + 1):
+        high = whole * (n / PIECES)
+        if not _press(ball, state, w, k, facing, moves, holds, high) > 0.0:
             break
-        low = t
-    if high == whole and _press(ball, state, w, k, facing, moves, holds, whole) > 0.0:
-        return whole
+        low = high
+    if low == whole:
+        return (joint if joint <= whole else math.inf), whole
     for _ in range(BRACKETING_STEPS):
         t = 0.5 * (low + high)
         if not low < t < high:
@@ -177,7 +187,7 @@ def _first_end(state: State, w: int, k: int, facing: float, moves: bool, holds: 
             low = t
         else:
             high = t
-    return low
+    return low, low
 
 
 @routine
@@ -202,11 +212,10 @@ def _press(ball: Record, state: State, w: int, k: int, facing: float, moves: boo
 
 
 @function
-def _time_to_joints(state: State, w: int, k: int, carried: Carried, moves: bool) -> float:
-    """Return after how long [s] a ball comes to where the round end of a part, or an arc, ends; inf if it does not."""
-    if moves:
-        ball = state.balls[w, k]
-        core = part_core_at(moving_part(state, w, ball.rides), ball.hi, ball.lo)
+def _time_to_joints(state: State, w: int, k: int, m: int, carried: Carried) -> float:
+    """Return after how long [s] a ball comes to where the round end of part `m`, or an arc, ends; inf: it does not."""
+    if m >= 0:
+        core = part_core_at(moving_part(state, w, m), state.balls[w, k].hi, state.balls[w, k].lo)
         if core.back == core.front:
             return math.inf
         one = _time_to_direction(carried, -core.uy, core.ux)

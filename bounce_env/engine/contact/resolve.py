@@ -170,8 +170,8 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
     # Where something closes on it, a ball without room is bounced from a corner at once, for ever.
     met_nothing = state.worlds[w].bounces == bounces or ball.confined > BOUNCES_BEFORE_STANDING
-    if ball.contact == FLYING and at_once and met_nothing:
-        leave_part(state, w, k, ledger)
+    if ball.contact == FLYING:
+        leave_part(state, w, k, at_once and met_nothing, ledger)
     update_crossing_sides(state, w, k)
     vx, vy, duration = ball.vx, ball.vy, -1.0
     if state.gravity is not None and single >= 0 and ball.contact == FLYING:

@@ -1,28 +1,30 @@
-"""The smallest rebound: how a ball goes on along what turns or stretches, where a contact has no closed form."""
+"""The smallest rebound: how a ball goes on along a part where a contact has no closed form.
+
+So it does along what turns or stretches, and between two round surfaces, or two parts.
+"""
 
 from bounce_env.engine.compile.jit import Table, function, where
 from bounce_env.engine.contact.bounces import fastest_closing
 from bounce_env.engine.contact.hits import count_bounce
-from bounce_env.engine.contact.restitution import closing_speed, push_off, slow_speed, surface_speed
+from bounce_env.engine.contact.restitution import closing_speed, normal_load, push_off, slow_speed, surface_speed
 from bounce_env.engine.memory.state import State
 
 
 @where("parts")
-def leave_part(state: State, w: int, k: int, ledger: Table) -> None:
-    """Let a ball leave the fastest part that it touches and does not leave already, with the smallest rebound.
+def leave_part(state: State, w: int, k: int, told: bool, ledger: Table) -> None:
+    """Let a ball that flies leave a part with the smallest rebound: of those that it touches, the fastest.
 
-    Between a part that moves and something else it may be pressed on both and close on neither. What it leaves already
-    is not what it was told of.
+    Only one that it does not leave already, and that is round and presses it, or any if it was told at once of a hit.
+    Between a part that moves and something else it may be pressed on both and close on neither.
     """
     ball, index = state.balls[w, k], -1
     for i in range(ball.touched):
         touch = state.touches[w, i]
         leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
-        if (
-            touch.part >= 0
-            and not leaving
-            and (index < 0 or surface_speed(touch) > surface_speed(state.touches[w, index]))
-        ):
+        pressed = touch.curvature != 0.0 and normal_load(ball, touch) > 0.0
+        if touch.part < 0 or leaving or not (told or pressed):
+            continue
+        if index < 0 or surface_speed(touch) > surface_speed(state.touches[w, index]):
             index = i
     if index < 0:
         return

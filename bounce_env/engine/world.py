@@ -46,9 +46,8 @@ class World:
     scene: what the world is made of. balls: how many balls, 1 or more, all alike.
     Before the first `reset` there is no ball in play, and every other method raises RuntimeError.
 
-    A ball rests and slides on walls, circles and arcs, and on the straight sides of parts that stand or slide; it rolls
-    in small hops on round ends of parts and on parts that turn. Balls may lie on each other, and rest so; those of no
-    radius do not meet.
+    A ball rests and slides on walls, circles and arcs, and on parts that stand or slide; along parts that turn it goes
+    in small bounces. Balls may lie on each other, and rest so; those of no radius do not meet.
     """
 
     def __init__(self, scene: Scene, balls: int = 1) -> None:

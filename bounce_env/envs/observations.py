@@ -151,9 +151,7 @@ class Frames:
         ball = (int(episode.seed), int(episode.episodes), int(episode.ball))
         # A step lasts longer where a ball has been served in it: the one that is seen now came from there.
         longest = game.step_seconds * 1.001
-        state = self._batch.state
-        flight = Flight.of(state.balls[w, 0], None if state.curve_slides is None else state.curve_slides[w, 0])
-        self._trails[w].go_on(ball, flight, float(world.time_hi + world.time_lo), longest)
+        self._trails[w].go_on(ball, Flight.of(self._batch.state, w), float(world.time_hi + world.time_lo), longest)
 
     def _picture(self, w: int, *, at_bounce: bool, score: bool) -> Picture:
         batch = self._batch

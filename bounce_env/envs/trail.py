@@ -7,10 +7,12 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.compile.jit import from_python
-from bounce_env.engine.memory.records import ON_CURVE, OUT
+from bounce_env.engine.memory.records import CARRIED_ALONG, ON_CURVE, OUT
+from bounce_env.engine.memory.state import State
+from bounce_env.engine.motion.carried import Carried, carried_after
 from bounce_env.engine.motion.curve_slide import CurveSlide, curve_slide_after
 
-_slide_after = from_python(curve_slide_after)
+_slide_after, _carried_after = from_python(curve_slide_after), from_python(carried_after)
 
 SPACING = 1 / 60
 """Seconds between two points of a flight: closer than one can tell from the curve."""
@@ -20,7 +22,10 @@ SAME_PLACE = 1e-6
 
 
 class Flight(NamedTuple):
-    """Where and how fast a ball was at an instant [s], and how its velocity has changed since [m/s^2]; or its slide."""
+    """Where and how fast a ball was at an instant [s], and how its velocity has changed since [m/s^2].
+
+    slide, carried: what its path is instead, where it slides on a curve, or where two surfaces carry it.
+    """
 
     x: float
     y: float
@@ -30,22 +35,23 @@ class Flight(NamedTuple):
     ay: float
     begun: float
     slide: CurveSlide | None = None
+    carried: Carried | None = None
 
     @classmethod
-    def of(cls, ball: Any, slide: Any = None) -> "Flight":
-        """Return the present flight of a ball (a row of `State.balls`); a drained one stays where it is.
-
-        slide: its row of `State.curve_slides`, where the scene has any.
-        """
-        b = dict(zip(ball.dtype.names, ball.item(), strict=True))
+    def of(cls, state: State, w: int) -> "Flight":
+        """Return the present flight of the first ball of world `w`; a drained one stays where it is."""
+        b = _row(state.balls[w, 0])
         begun = b["hi"] + b["lo"]
         if b["status"] == OUT:
             return cls(b["x"], b["y"], 0.0, 0.0, 0.0, 0.0, begun)
-        on_curve = None
+        slide = carried = None
         if b["contact"] == ON_CURVE:
-            row = dict(zip(slide.dtype.names, slide.item(), strict=True))
-            on_curve = CurveSlide(*(row[name] for name in CurveSlide._fields))
-        return cls(b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], begun, on_curve)
+            row = _row(state.curve_slides[w, 0])
+            slide = CurveSlide(*(row[name] for name in CurveSlide._fields))
+        elif b["contact"] == CARRIED_ALONG:
+            row = _row(state.carried[w, 0])
+            carried = Carried(*(row[name] for name in Carried._fields))
+        return cls(b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], begun, slide, carried)
 
     def at(self, time: float) -> tuple[float, float]:
         """Return where the ball is at an instant."""
@@ -53,7 +59,14 @@ class Flight(NamedTuple):
         if self.slide is not None:
             x, y, _, _ = _slide_after(self.slide, t)
             return x, y
+        if self.carried is not None:
+            x, y, _, _ = _carried_after(self.carried, t)
+            return x, y
         return self.x + (self.vx + 0.5 * self.ax * t) * t, self.y + (self.vy + 0.5 * self.ay * t) * t
+
+
+def _row(record: Any) -> dict[str, Any]:
+    return dict(zip(record.dtype.names, record.item(), strict=True))
 
 
 class Trail:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from tests.reference.ledger_law import Rules, Surface, is_friction, is_soft, pressing, rolling_speed, split
+from tests.reference.ledger_law import Rules, Surface, is_friction, is_soft, pressing, split
 from tests.reference.ledger_touch import Bearing, Vector
 
 PRESSING = 2.0**-40  # share of the acceleration: pressed less than this, friction holds nothing
@@ -179,16 +179,6 @@ def gets_away(bearings: Sequence[Bearing], max_speed: float) -> bool:
         drive = b.ux * b.nx + b.uy * b.ny
         ways.append((drive * b.nx, drive * b.ny))
     return any(math.hypot(*v) <= fastest and _closes_on_none(bearings, v, v) for v in ways)
-
-
-def hop(surface: Surface, rules: Rules, v: Vector) -> Vector | None:
-    """The velocity with which a ball leaves a curve that it moves along, pressed on it; None where there is no hop."""
-    closing, slid = split(surface, *v)
-    press = pressing(surface, slid)
-    if surface.curvature == 0.0 or press <= 0.0 or abs(closing) > slow(v) + slow((surface.ux, surface.uy)):
-        return None
-    more = rolling_speed(surface, rules, slid, press) + closing
-    return v[0] + more * surface.nx, v[1] + more * surface.ny
 
 
 def settling(surface: Surface, rules: Rules, v: Vector) -> Settling | None:

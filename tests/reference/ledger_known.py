@@ -55,8 +55,7 @@ class Known:
         self.must_end = False  # whether the ball has left what it was in contact with
         self.reports: dict[int, list[Report]] = {}
         self.instant, self.fastest = -math.inf, 0.0  # [s] of the last bounce or contact, [m/s] in any row of it
-        self.rolls_on = -1  # the element off which the ball hopped in its last bounce
-        self.hopped = -math.inf  # [s] when it did
+        self.left = -math.inf  # [s] when the ball last left a part with the smallest rebound
         self.jammed = -math.inf  # [s] when other balls last stopped it
         self.shared = -1  # the number of the row that began a bounce from two elements at once
         self.is_crushed, self.crushed_at = False, -1  # the number of the row that says so
@@ -132,7 +131,6 @@ class Known:
         still = Surface(
             row.nx, row.ny, row.ux, row.uy, curvature, ax, ay,
             ball.b * element.b, ball.f * element.f, element.kick, element.kick_threshold,
-            self.rolls_on == row.element,
         )  # fmt: skip
         run = self.setting.runs.get(row.element)
         if run is None:

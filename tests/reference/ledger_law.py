@@ -14,7 +14,7 @@ Vector = tuple[float, float]
 
 CLOSE = 1e-9  # share of the speed within which a comparison with a threshold may go either way
 HOP_ULPS = 16.0 * 2.0**-52  # of the scene's extent: a hop no higher than this is none
-ROLLING = 0.01  # of sqrt(press rho): the speed of the hops in which a ball rolls on a curve, at most
+LEAST = 0.01  # of sqrt(acceleration size): the smallest rebound from what has no closed form for a contact
 
 
 class Surface(NamedTuple):
@@ -31,7 +31,6 @@ class Surface(NamedTuple):
     f: float
     kick: float
     kick_threshold: float
-    rolls: bool  # whether the ball's last bounce was a hop on it
     moves: bool = False  # it is a part that turns or stretches
     least: float = 0.0  # [m/s] the smallest rebound from it, if it is a part
 
@@ -87,27 +86,19 @@ def _without_kick(s: Surface, rules: Rules, closing: float, along: float, near: 
     if press < -scale:
         return
     press = max(press, 0.0)
-    if s.curvature != 0.0 and s.least == 0.0:
-        yield from _off_standing_curve(s, rules, closing, along, near, press <= scale)
+    if s.curvature != 0.0:
+        yield from _off_curve(s, rules, closing, along, near, press <= scale)
         return
-    absorbed = rules.rest_speed
-    if s.curvature != 0.0 and rules.rest_speed > 0.0:
-        absorbed = max(absorbed, 1.5 * rolling_speed(s, rules, along, press))
-    if closing <= absorbed + near and absorbed > 0.0:
+    if closing <= rules.rest_speed + near and rules.rest_speed > 0.0:
         yield 0.0, along if s.f > 0.0 else 0.0
-    if closing < absorbed - near:
-        return
-    if s.curvature == 0.0 or (s.b >= 1.0 and not s.rolls):  # where nothing is lost bounces do not die away
+    if closing >= rules.rest_speed - near:
         yield law
-    else:
-        for away in _off_curve(s, rules, closing, along, near, press):
-            yield away, s.f * along
 
 
-def _off_standing_curve(
+def _off_curve(
     s: Surface, rules: Rules, closing: float, along: float, near: float, loose: bool
 ) -> Iterator[tuple[float, float]]:
-    """A circle or arc that stands: the law, but where gravity presses. `loose`: nothing may press the ball."""
+    """What is round: the law, but where gravity presses. `loose`: nothing may press the ball."""
     by_gravity, scale = -(s.ax * s.nx + s.ay * s.ny), CLOSE * math.hypot(s.ax, s.ay)
     if by_gravity > -scale and closing <= rules.rest_speed + near:
         yield 0.0, along if s.f > 0.0 else 0.0
@@ -117,35 +108,12 @@ def _off_standing_curve(
 
 def least_rebound(rest_speed: float, pull: float, spin: float, size: float) -> float:
     """The smallest rebound [m/s] from what has no closed form for a contact: it keeps the bounces finite."""
-    return max(rest_speed, ROLLING * math.sqrt((pull + spin * spin * size) * size))
+    return max(rest_speed, LEAST * math.sqrt((pull + spin * spin * size) * size))
 
 
 def is_friction(f: float, rules: Rules) -> bool:
     """Whether a surface that a ball is pressed on holds it by friction."""
     return f == 0.0 or (f < 1.0 and rules.rest_speed == 0.0)
-
-
-def rolling_speed(s: Surface, rules: Rules, along: float, press: float) -> float:
-    """Speed [m/s] of the hops in which a ball rolls on a curve that it is pressed on, at most."""
-    return min(
-        ROLLING * math.sqrt(press / abs(s.curvature)),
-        max(0.5 * abs(along), 4.0 * math.sqrt(2.0 * press * rules.soft_hop)),
-    )
-
-
-def _off_curve(s: Surface, rules: Rules, closing: float, along: float, near: float, press: float) -> Iterator[float]:
-    """Speeds at which the ball may leave a curve that it is pressed on: small ones grow to the hops of rolling."""
-    least, away = rolling_speed(s, rules, along, press), s.b * closing
-    holds = away == 0.0 and is_friction(s.f, rules)
-    if holds or away >= least - near:
-        yield away
-    if not holds and away < least + near:
-        if is_soft(rules, closing, press):
-            yield 0.0
-        if abs(along) >= 2.0 * least - near:
-            yield max(away, least)
-        if abs(along) <= 2.0 * least + near:  # slow along the curve, the bounces die away
-            yield max(away, min(least, 0.5 * closing))
 
 
 def is_soft(rules: Rules, closing: float, press: float) -> bool:

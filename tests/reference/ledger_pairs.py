@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from tests.reference.ledger_contact import closing_on, gets_away
 from tests.reference.ledger_known import Way
-from tests.reference.ledger_law import ROLLING, capped
+from tests.reference.ledger_law import LEAST, capped
 from tests.reference.ledger_row import BOUNCE, Row, apart
 from tests.reference.ledger_rows import RowChecks
 from tests.reference.ledger_setting import CLEARANCE, EXACT, TOLERANCE
@@ -97,7 +97,7 @@ class PairChecks(RowChecks):
     def _least(self) -> float:
         """With what speed [m/s] two balls that are pressed together leave each other at least."""
         pull = math.hypot(*self.walk.acceleration)
-        return max(self.rules.rest_speed, ROLLING * math.sqrt(pull * 2.0 * self.scene.ball.radius))
+        return max(self.rules.rest_speed, LEAST * math.sqrt(pull * 2.0 * self.scene.ball.radius))
 
     def _pulls(self) -> list[Vector]:
         """The accelerations that the ball may be under."""

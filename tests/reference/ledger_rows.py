@@ -14,7 +14,6 @@ from tests.reference.ledger_contact import (
     after_contact,
     along,
     closing_on,
-    hop,
     press_on,
     projections,
     settling,
@@ -54,20 +53,13 @@ class RowChecks(Known):
             self.say(index, f"elements[{rival.first}] is closed on as fast, and comes first")
         self.closes_no_more(index, row)
         if closing <= scale:
-            hops = [
-                hop(s, self.rules, row.before) for curvature in own.curvatures for s in self.surfaces(row, curvature)
-            ]
-            if any(v is not None and apart(v, row.after) <= scale for v in hops):
-                self.rolls_on, self.hopped = row.element, row.time
-                return
             off = [(row.vx0 + s.least * s.nx, row.vy0 + s.least * s.ny) for s in self.surfaces(row, 0.0) if s.least]
-            if any(apart(v, row.after) <= scale for v in off):  # pressed on a part and something else
-                self.hopped = row.time
+            if any(apart(v, row.after) <= scale for v in off):  # the smallest rebound
+                self.left = row.time
                 return
-            hops += off
             if closing <= 0.0:
                 words = f"at {closing:.3g} m/s the ball does not close on elements[{row.element}]"
-                self.say(index, f"{words}, nor is it a hop to one of {hops}")
+                self.say(index, f"{words}, nor does it leave with the smallest rebound, to one of {off}")
                 return
         self.bounces_by_law(index, row, own, scale)
 
@@ -97,8 +89,6 @@ class RowChecks(Known):
 
     def bounces_by_law(self, index: int, row: Row, own: Own, scale: float) -> None:
         """The velocity after must be what the law makes of the one before, or what a corner leaves of it."""
-        if self.rolls_on != row.element:
-            self.rolls_on = -1
         lawful = []
         for surface in (s for curvature in own.curvatures for s in self.surfaces(row, curvature)):
             lawful = list(self.lawful(row, surface))
@@ -110,7 +100,7 @@ class RowChecks(Known):
             if met:
                 return
         ends = list(self.ends_of_corner(index, row, self.bearings(row)))
-        if self.hopped == row.time:  # what the hop closes on it leaves along
+        if self.left == row.time:  # what the smallest rebound closes on it leaves along
             ends += [along(b, row.before) for b in self.bearings(row) if b.element == row.element]
         if all(apart(v, row.after) > scale for v in ends):
             self.say(index, f"the bounce leaves one of {[v for v, _ in lawful] + ends}, not {row.after}")

@@ -31,17 +31,28 @@ def leave_part(state: State, w: int, k: int, told: bool, ledger: Table) -> None:
     touch = state.touches[w, index]
     vx0, vy0 = ball.vx, ball.vy
     # Without gravity there is no smallest rebound, but rounding, which had told it of the hit.
-    push_off(ball, touch, max(touch.least, 2.0 * slow_speed(ball, touch)))
+    rebound = max(touch.least, 2.0 * slow_speed(ball, touch))
+    push_off(ball, touch, rebound)
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
-    _keep_off(state, w, k, ledger)
+    _keep_off(state, w, k, index, rebound, ledger)
 
 
 @function
-def _keep_off(state: State, w: int, k: int, ledger: Table) -> None:
-    """After a smallest rebound: let the ball leave along what that closes on."""
+def _keep_off(state: State, w: int, k: int, index: int, rebound: float, ledger: Table) -> None:
+    """After a `rebound` [m/s] from touched surface `index`: let the ball leave along what that closes on.
+
+    If that is round, it leaves it, too, as far as it does not close on the first again: of a flight along a round one,
+    pressed on it, no hit would be found.
+    """
     ball = state.balls[w, k]
     other, closing = fastest_closing(ball, state.touches, w, 0.0)
-    if other >= 0:
-        touch, vx0, vy0 = state.touches[w, other], ball.vx, ball.vy
-        push_off(ball, touch, closing)
-        count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    if other < 0:
+        return
+    first, touch, vx0, vy0 = state.touches[w, index], state.touches[w, other], ball.vx, ball.vy
+    opposed = -(first.nx * touch.nx + first.ny * touch.ny)
+    more = 0.0
+    if touch.curvature != 0.0:
+        left = rebound - closing * opposed  # how fast it then still leaves the first
+        more = rebound if opposed <= 0.0 else min(max(0.5 * left / opposed, 0.0), rebound)
+    push_off(ball, touch, closing + more)
+    count_bounce(state, w, k, touch, vx0, vy0, ledger)

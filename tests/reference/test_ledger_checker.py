@@ -103,7 +103,7 @@ def commanded():
 
 def on_a_paddle(f):
     """Bounces on a paddle that end in contact: with f < 1 it takes the ball along, with f = 1 it slides away."""
-    paddle = Paddle((0.5, 0.2), (1.5, 0.2), half_width=0.2, radius=0.02, max_speed=1.0, b=0.3, f=f, name="paddle")
+    paddle = Paddle((0.5, 0.2), (1.5, 0.2), half_width=0.4, radius=0.02, max_speed=1.0, b=0.3, f=f, name="paddle")
     script = ((1.0, "paddle", 0.3), (1.5, "paddle", -0.4), (2.25, "paddle", 0.1))
     return play(whole(*box(2.0, 1.0), paddle), (1.0, 0.5), (0.05, 0.0), 4.0, script)
 

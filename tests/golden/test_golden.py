@@ -20,7 +20,7 @@ pytestmark = pytest.mark.golden
 
 GOLDEN = {
     "Bounce/Paddle-v0": "882cd901166dabf4fe8977cd69258c1e6eafc5e7b76ef6453636773070917294",
-    "Bounce/Pinball-v0": "44945921bf3bb637ce24883e29e81edfb519c9e6ee2dcac149fb5f6fb3de45ad",
+    "Bounce/Pinball-v0": "c4bb17c717273cf9f8dde3a74ed0c051d7cd7b6c351a0eb31a37d47f444563e6",
     "Bounce/Walls-v0": "32b3a39434b8121ea5573ed75362dde336721e19127d8bdec4468dff714e6b03",
 }
 TIME_LIMITS = {"Bounce/Paddle-v0": 6.0, "Bounce/Pinball-v0": 8.0, "Bounce/Walls-v0": 8.0}

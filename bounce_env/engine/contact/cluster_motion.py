@@ -38,7 +38,7 @@ def go_on(state: State, w: int, count: int, ledger: Table) -> None:
     close_gaps(state, w, count)
     _find_leaning(state, w, count, soft)
     seconds = _seconds_known(state, w, count)
-    if seconds != math.inf:
+    if seconds <= LONGEST:
         _turn_forces(state, w, count, 0.5 * seconds)
     for i in range(state.members.shape[1]):
         if state.members[w, i].inside and state.balls[w, i].status != CRUSHED and state.members[w, i].leans:

@@ -3,7 +3,7 @@
 So it does along what turns or stretches, and between two round surfaces, or two parts.
 """
 
-from bounce_env.engine.compile.jit import Table, function, where
+from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.bounces import fastest_closing
 from bounce_env.engine.contact.hits import count_bounce
 from bounce_env.engine.contact.restitution import closing_speed, normal_load, push_off, slow_speed, surface_speed
@@ -14,15 +14,16 @@ from bounce_env.engine.memory.state import State
 def leave_part(state: State, w: int, k: int, told: bool, ledger: Table) -> None:
     """Let a ball that flies leave a part with the smallest rebound: of those that it touches, the fastest.
 
-    Only one that it does not leave already, and that is round and presses it, or any if it was told at once of a hit.
+    Only one that it does not leave already, where something round presses the ball, or it was told at once of a hit.
     Between a part that moves and something else it may be pressed on both and close on neither.
     """
-    ball, index = state.balls[w, k], -1
+    ball, index, called = state.balls[w, k], -1, told
     for i in range(ball.touched):
         touch = state.touches[w, i]
-        leaving = closing_speed(ball, touch) < -slow_speed(ball, touch)
-        pressed = touch.curvature != 0.0 and normal_load(ball, touch) > 0.0
-        if touch.part < 0 or leaving or not (told or pressed):
+        called = called or (touch.curvature != 0.0 and not _leaves(ball, touch) and normal_load(ball, touch) > 0.0)
+    for i in range(ball.touched if called else 0):
+        touch = state.touches[w, i]
+        if touch.part < 0 or _leaves(ball, touch):
             continue
         if index < 0 or surface_speed(touch) > surface_speed(state.touches[w, index]):
             index = i
@@ -35,6 +36,11 @@ def leave_part(state: State, w: int, k: int, told: bool, ledger: Table) -> None:
     push_off(ball, touch, rebound)
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
     _keep_off(state, w, k, index, rebound, ledger)
+
+
+@function
+def _leaves(ball: Record, touch: Record) -> bool:
+    return closing_speed(ball, touch) < -slow_speed(ball, touch)
 
 
 @function

@@ -152,3 +152,16 @@ def test_a_part_that_stops_in_time_crushes_nothing():
     world.advance(3.0)
     assert world.status[0] == Status.OK
     assert abs(world.position[0][1] - RADIUS) < 1e-12
+
+
+@pytest.mark.parametrize("f", [0.5, 1.0])
+def test_a_ball_that_bounces_off_the_floor_beside_a_wall_that_comes_is_not_held(f):
+    """It comes down along an upright wall, which it touches and which moves with it: the floor throws it up again.
+
+    With f < 1 the floor slows it, so that the wall strikes it, and takes its share of the speed up.
+    """
+    world = world_with_wall(0.0, 0.0, f)
+    world.reset(position=(world.cores[0][0] + RADIUS, 0.1), velocity=(PUSH[0], 0.0))
+    command(world, 0.0, PUSH[0])
+    world.advance(math.sqrt(2.0 * 0.08 / G) + 1e-3)
+    assert world.velocity[0, 1] == pytest.approx(f * 0.5 * math.sqrt(2.0 * G * 0.08), abs=0.02)

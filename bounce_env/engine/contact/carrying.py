@@ -59,7 +59,7 @@ def _is_carried_between(state: State, w: int, k: int, i: int, j: int) -> bool:
         return False
     holds = _stops(state, w, ball, wall)
     slow = slow_speed(ball, wall) + slow_speed(ball, part)
-    if not (holds or (abs(closing_speed(ball, wall)) <= slow and abs(closing_speed(ball, part)) <= slow)):
+    if abs(closing_speed(ball, wall)) > slow or not (holds or abs(closing_speed(ball, part)) <= slow):
         return False
     if holds and state.elements[state.worlds[w].scene, part.element].kick > 0.0:
         return False

@@ -1,6 +1,7 @@
 """The way that a ball has come in the last moments, from its flights as they are in the state."""
 
 import math
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ SAME_PLACE = 1e-6
 class Flight(NamedTuple):
     """Where and how fast a ball was at an instant [s], and how its velocity has changed since [m/s^2].
 
-    slide, carried: what its path is instead, where it slides on a curve, or where two surfaces carry it.
+    path: what its way is instead, where it slides on a curve, or where two surfaces carry it.
     """
 
     x: float
@@ -34,8 +35,7 @@ class Flight(NamedTuple):
     ax: float
     ay: float
     begun: float
-    slide: CurveSlide | None = None
-    carried: Carried | None = None
+    path: CurveSlide | Carried | None = None
 
     @classmethod
     def of(cls, state: State, w: int) -> "Flight":
@@ -44,24 +44,20 @@ class Flight(NamedTuple):
         begun = b["hi"] + b["lo"]
         if b["status"] == OUT:
             return cls(b["x"], b["y"], 0.0, 0.0, 0.0, 0.0, begun)
-        slide = carried = None
+        path: CurveSlide | Carried | None = None
         if b["contact"] == ON_CURVE:
-            row = _row(state.curve_slides[w, 0])
-            slide = CurveSlide(*(row[name] for name in CurveSlide._fields))
+            path = CurveSlide(*itemgetter(*CurveSlide._fields)(_row(state.curve_slides[w, 0])))
         elif b["contact"] == CARRIED_ALONG:
-            row = _row(state.carried[w, 0])
-            carried = Carried(*(row[name] for name in Carried._fields))
-        return cls(b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], begun, slide, carried)
+            path = Carried(*itemgetter(*Carried._fields)(_row(state.carried[w, 0])))
+        return cls(b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], begun, path)
 
     def at(self, time: float) -> tuple[float, float]:
         """Return where the ball is at an instant."""
         t = time - self.begun
-        if self.slide is not None:
-            x, y, _, _ = _slide_after(self.slide, t)
-            return x, y
-        if self.carried is not None:
-            x, y, _, _ = _carried_after(self.carried, t)
-            return x, y
+        if isinstance(self.path, CurveSlide):
+            return _slide_after(self.path, t)[:2]
+        if self.path is not None:
+            return _carried_after(self.path, t)[:2]
         return self.x + (self.vx + 0.5 * self.ax * t) * t, self.y + (self.vy + 0.5 * self.ay * t) * t
 
 

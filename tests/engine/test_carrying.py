@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bounce_env import Ball, EventKind, Paddle, Scene, Status, Wall, World
+from tests.engine.in_pieces import assert_same_in_pieces
 
 RADIUS, G = 0.02, 9.81
 PUSH = (0.3, 0.0)
@@ -47,13 +48,7 @@ def test_a_pushed_ball_moves_as_fast_as_the_wall_comes(lean, slope, f):
 
 
 def test_time_in_pieces_and_snapshots_change_no_bit():
-    whole, pieces = (world_with_wall(0.12, 0.1, 1.0, b=0.5) for _ in range(2))
-    whole.advance(4.0)
-    for _ in range(256):
-        pieces.advance(4.0 / 256)
-        pieces.restore(pieces.snapshot())
-    assert pieces.position.tobytes() == whole.position.tobytes()
-    assert pieces.velocity.tobytes() == whole.velocity.tobytes()
+    assert_same_in_pieces(lambda: world_with_wall(0.12, 0.1, 1.0, b=0.5), 4.0)
 
 
 @pytest.mark.parametrize("f", [0.9, 1.0])

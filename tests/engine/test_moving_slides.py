@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from bounce_env import Arc, Ball, Bumper, EventKind, Field, Paddle, Scene, Sensor, Status, Wall, World
+from tests.engine.in_pieces import assert_same_in_pieces
 from tests.stability.stability_case import new_world
 
 R, RADIUS, G = 0.3, 0.05, 9.81
@@ -78,13 +79,7 @@ def test_a_slide_is_two_rows_and_lets_go_where_it_does_on_what_stands(rail):
 
 
 def test_pieces_and_snapshots_change_no_bit():
-    whole, pieces = (sliding((1.0, 0.25), Wall((1.2, -1), (1.2, 2), b=0.5)) for _ in range(2))
-    whole.advance(2.0)
-    for _ in range(256):
-        pieces.advance(2.0 / 256)
-        pieces.restore(pieces.snapshot())
-    assert pieces.position.tobytes() == whole.position.tobytes()
-    assert pieces.velocity.tobytes() == whole.velocity.tobytes()
+    assert_same_in_pieces(lambda: sliding((1.0, 0.25), Wall((1.2, -1), (1.2, 2), b=0.5)), 2.0)
 
 
 PASSED = {
@@ -232,10 +227,4 @@ def test_a_wall_sweeps_a_ball_round_a_bumper():
 
 
 def test_a_carried_ball_in_pieces_and_from_snapshots_is_the_same():
-    whole, pieces = between(0.1), between(0.1)
-    whole.advance(3.5)
-    for _ in range(256):
-        pieces.advance(3.5 / 256)
-        pieces.restore(pieces.snapshot())
-    assert pieces.position.tobytes() == whole.position.tobytes()
-    assert pieces.velocity.tobytes() == whole.velocity.tobytes()
+    assert_same_in_pieces(lambda: between(0.1), 3.5)

@@ -11,6 +11,7 @@ from bounce_env.engine.contact.restitution import (
     ahead_of_both,
     along_speed,
     closing_speed,
+    forces_on_both,
     is_holding,
     is_standing,
     slow_speed,
@@ -66,11 +67,11 @@ def _is_carried_between(state: State, w: int, k: int, i: int, j: int) -> bool:
     vx, vy = ball.vx, ball.vy
     ball.vx, ball.vy = ahead_of_both(wall, part, turn)
     straight = (wall.curvature == 0.0 or _stays_on(ball, wall)) and (part.curvature == 0.0 or _stays_on(ball, part))
-    if _is_pressed_on_both(ball, wall, part, turn, holds, straight) and _closes_on_no_other(ball, touches, w, i, j):
-        if straight and wall.face >= 0:
+    if _closes_on_no_other(ball, touches, w, i, j):
+        if straight and wall.face >= 0 and _is_pressed_on_both(ball, wall, part, turn, holds):
             ball.contact, ball.rides, ball.support, ball.ax, ball.ay = wall.face, part.part, wall.element, 0.0, 0.0
             return True
-        if not straight and _begins(state, w, k, i, j, holds):
+        if not straight and _begins(state, w, k, i, j, 0.0 if holds else _press_noise(ball, turn), holds):
             return True
     ball.vx, ball.vy = vx, vy
     return False
@@ -91,28 +92,20 @@ def _stays_on(ball: Record, touch: Record) -> bool:
 
 
 @function
-def _is_pressed_on_both(ball: Record, wall: Record, part: Record, turn: float, holds: bool, straight: bool) -> bool:
-    """Return whether it takes both surfaces to keep the ball in the motion that both ask for.
+def _is_pressed_on_both(ball: Record, wall: Record, part: Record, turn: float, holds: bool) -> bool:
+    """Return whether it takes two straight surfaces to keep a ball in uniform motion: neither pulls.
 
-    Of the forces (per mass) along the two normals neither pulls; between straight surfaces that is enough. Where
-    friction stops the ball, the part must come towards it.
+    Where friction stops the ball, the part must come towards it.
     """
     if holds:
         return surface_speed(part) > 0.0
-    of_wall, of_part = _forces(ball, wall, part, turn)
-    noise = PRESSING * (abs(ball.gx) + abs(ball.gy)) / abs(turn)
-    return min(of_wall, of_part) >= -noise if straight else min(of_wall, of_part) > noise
+    return min(forces_on_both(ball, wall, part, turn)) >= -_press_noise(ball, turn)
 
 
 @function
-def _forces(ball: Record, wall: Record, part: Record, turn: float) -> tuple[float, float]:
-    """Return the forces per mass [m/s^2] along both normals that let a ball follow the bends of two surfaces."""
-    along_wall, along_part = along_speed(ball, wall), along_speed(ball, part)
-    # What the normal components of its acceleration are beyond those of gravity.
-    a = -wall.curvature * along_wall * along_wall - (ball.gx * wall.nx + ball.gy * wall.ny)
-    b = -part.curvature * along_part * along_part - (ball.gx * part.nx + ball.gy * part.ny)
-    ax, ay = (a * part.ny - b * wall.ny) / turn, (b * wall.nx - a * part.nx) / turn
-    return (ax * part.ny - ay * part.nx) / turn, (ay * wall.nx - ax * wall.ny) / turn
+def _press_noise(ball: Record, turn: float) -> float:
+    """Return what of the forces (per mass, m/s^2) along two normals is rounding; turn: the sine between these."""
+    return PRESSING * (abs(ball.gx) + abs(ball.gy)) / abs(turn)
 
 
 @function
@@ -129,10 +122,10 @@ def _closes_on_no_other(ball: Record, touches: Table, w: int, i: int, j: int) ->
 
 
 @where("carried", otherwise=False, inline=False)
-def _begins(state: State, w: int, k: int, i: int, j: int, holds: bool) -> bool:
+def _begins(state: State, w: int, k: int, i: int, j: int, noise: float, holds: bool) -> bool:
     """Note how a ball moves between surface `i`, which stands, and part `j`; return whether it comes any way so.
 
-    One of the two is straight, the other round.
+    One of the two is straight, the other round. noise: of what presses it [m/s^2].
     """
     ball, carried = state.balls[w, k], state.carried[w, k]
     curve, straight = state.touches[w, i], state.touches[w, j]
@@ -148,6 +141,8 @@ def _begins(state: State, w: int, k: int, i: int, j: int, holds: bool) -> bool:
     approach = (curve.ux - straight.ux) * straight.nx + (curve.uy - straight.uy) * straight.ny
     carried.rate, carried.least = -approach / curve.radius, 1.0
     carried.face, carried.arc = straight.face, curve.arc
+    if not _press(ball, state, w, k, facing, curve.part >= 0, holds, 0.0) > noise:
+        return False
     carried.end, surely = _first_end(state, w, k, state.touches[w, j].part, facing, curve.part >= 0, holds)
     motion = carried_of(carried)
     carried.least = min(abs(carried_direction(motion, 0.0)[1]), abs(carried_direction(motion, surely)[1]))

@@ -10,9 +10,10 @@ from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.contact.carrying import carry, runs_off_end
 from bounce_env.engine.contact.restitution import (
     along_speed,
-    closing_speed,
+    forces_on_both,
     gap_trend,
     is_holding,
+    is_leaving,
     is_sliding_curve,
     is_standing,
     load_noise,
@@ -45,7 +46,7 @@ def find_contact(state: State, w: int, k: int) -> int:
         return i
     for i in range(ball.touched):
         touch = state.touches[w, i]
-        if touch.moves or closing_speed(ball, touch) < -slow_speed(ball, touch) or not _is_pressed(ball, touch):
+        if touch.moves or is_leaving(ball, touch) or not _is_pressed(ball, touch):
             continue
         if not _lets_hold(ball, state.touches, w, i):
             continue
@@ -138,7 +139,7 @@ def _carries_alone(ball: Record, touch: Record) -> bool:
     """Whether a surface is level beneath a ball that moves neither away nor along: its bounces are summed instead."""
     level = abs(ball.gx * touch.ny - ball.gy * touch.nx) <= ALIGNED * (abs(ball.gx) + abs(ball.gy))
     beneath = ball.gx * touch.nx + ball.gy * touch.ny < 0.0
-    stays = closing_speed(ball, touch) >= -slow_speed(ball, touch) and along_speed(ball, touch) == 0.0
+    stays = not is_leaving(ball, touch) and along_speed(ball, touch) == 0.0
     return level and beneath and is_standing(touch) and stays
 
 
@@ -149,8 +150,7 @@ def _shares(ball: Record, one: Record, other: Record) -> tuple[float, float]:
     if not is_standing(one) or not is_standing(other) or abs(turn) <= ALIGNED:
         return -1.0, -1.0
     noise = ALIGNED * (abs(ball.gx) + abs(ball.gy))
-    of_one = (ball.gy * other.nx - ball.gx * other.ny) / turn
-    of_other = (ball.gx * one.ny - ball.gy * one.nx) / turn
+    of_one, of_other = forces_on_both(ball, one, other, turn)
     return of_one + noise, of_other + noise
 
 
@@ -162,7 +162,7 @@ def _slides_on(state: State, w: int, k: int, i: int) -> bool:
     """
     ball, touch = state.balls[w, k], state.touches[w, i]
     slow, curved = slow_speed(ball, touch), is_sliding_curve(touch)
-    if touch.moves or closing_speed(ball, touch) < -slow:
+    if touch.moves or is_leaving(ball, touch):
         return False
     # However little a wall presses it: what is not constrained would sink in by and by.
     if not (gap_trend(ball, touch) < 0 if curved else ball.gx * touch.nx + ball.gy * touch.ny < 0.0):
@@ -189,7 +189,7 @@ def _slides_on(state: State, w: int, k: int, i: int) -> bool:
 @function
 def _opens_beside(ball: Record, touch: Record, other: Record, ax: float, ay: float) -> bool:
     """Return whether the gap to another surface does not close while the ball slides, at (ax, ay), on one."""
-    if closing_speed(ball, other) < -slow_speed(ball, other) or runs_off_end(ball, other):
+    if is_leaving(ball, other) or runs_off_end(ball, other):
         return True
     along = along_speed(ball, other)
     noise = PRESSING * (abs(ball.gx) + abs(ball.gy)) + load_noise(ball, touch) + load_noise(ball, other)

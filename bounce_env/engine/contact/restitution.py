@@ -62,6 +62,12 @@ def closing_speed(ball: Record, touch: Record) -> float:
 
 
 @function
+def is_leaving(ball: Record, touch: Record) -> bool:
+    """Return whether the ball leaves a surface that it touches, by more than rounding."""
+    return closing_speed(ball, touch) < -slow_speed(ball, touch)
+
+
+@function
 def along_speed(ball: Record, touch: Record) -> float:
     """Return the speed [m/s] of the ball along a surface that it touches, counter-clockwise about it positive."""
     return (ball.vy - touch.uy) * touch.nx - (ball.vx - touch.ux) * touch.ny
@@ -85,6 +91,12 @@ def ahead_of_both(one: Record, other: Record, turn: float) -> tuple[float, float
     """Return the velocity [m/s] that keeps up with two touched surfaces, along both; turn: the sine between normals."""
     a, b = surface_speed(one), surface_speed(other)
     return (a * other.ny - b * one.ny) / turn, (b * one.nx - a * other.nx) / turn
+
+
+@function
+def forces_on_both(ball: Record, one: Record, other: Record, turn: float) -> tuple[float, float]:
+    """Return the forces per mass [m/s^2] along two normals that bear a ball; turn: the sine between these."""
+    return (ball.gy * other.nx - ball.gx * other.ny) / turn, (ball.gx * one.ny - ball.gy * one.nx) / turn
 
 
 @function

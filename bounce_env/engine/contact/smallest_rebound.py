@@ -3,10 +3,10 @@
 So it does along what turns or stretches, and between two round surfaces, or two parts.
 """
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.compile.jit import Table, function, where
 from bounce_env.engine.contact.bounces import fastest_closing
 from bounce_env.engine.contact.hits import count_bounce
-from bounce_env.engine.contact.restitution import closing_speed, normal_load, push_off, slow_speed, surface_speed
+from bounce_env.engine.contact.restitution import is_leaving, normal_load, push_off, slow_speed, surface_speed
 from bounce_env.engine.memory.state import State
 
 
@@ -20,10 +20,10 @@ def leave_part(state: State, w: int, k: int, told: bool, ledger: Table) -> None:
     ball, index, called = state.balls[w, k], -1, told
     for i in range(ball.touched):
         touch = state.touches[w, i]
-        called = called or (touch.curvature != 0.0 and not _leaves(ball, touch) and normal_load(ball, touch) > 0.0)
+        called = called or (touch.curvature != 0.0 and not is_leaving(ball, touch) and normal_load(ball, touch) > 0.0)
     for i in range(ball.touched if called else 0):
         touch = state.touches[w, i]
-        if touch.part < 0 or _leaves(ball, touch):
+        if touch.part < 0 or is_leaving(ball, touch):
             continue
         if index < 0 or surface_speed(touch) > surface_speed(state.touches[w, index]):
             index = i
@@ -36,11 +36,6 @@ def leave_part(state: State, w: int, k: int, told: bool, ledger: Table) -> None:
     push_off(ball, touch, rebound)
     count_bounce(state, w, k, touch, vx0, vy0, ledger)
     _keep_off(state, w, k, index, rebound, ledger)
-
-
-@function
-def _leaves(ball: Record, touch: Record) -> bool:
-    return closing_speed(ball, touch) < -slow_speed(ball, touch)
 
 
 @function

@@ -12,7 +12,7 @@ from bounce_env.engine.detect.along_curve import curve_search, first_of_itself, 
 from bounce_env.engine.detect.surfaces import face_line
 from bounce_env.engine.impact.advancement import advancement_step, advancement_to_closing
 from bounce_env.engine.impact.arc import is_in_arc_span
-from bounce_env.engine.impact.line import is_beside_line
+from bounce_env.engine.impact.line import Line, is_beside_line
 from bounce_env.engine.memory.lookup import is_off, is_one_way, side_on
 from bounce_env.engine.memory.records import OFF_CURVE, ON_ARC, ON_CIRCLE, ON_FACE, RESOLVE
 from bounce_env.engine.memory.state import State
@@ -149,11 +149,29 @@ def _step(gap: float, rate: float, pull: float) -> float:
 
 
 @function
-def way_beside(ball: Moving, along: float, rate: float, length: float) -> float:
-    """Return for how long [s] a ball surely does not come beside a line of this length [m]; 0 where it is."""
-    if along < 0.0:
-        return _step(-along, -rate, ball.pull)
-    return _step(along - length, rate, ball.pull) if along > length else 0.0
+def line_ahead(ball: Moving, line: Line, x: float, y: float, side: int) -> tuple[float, bool, float]:
+    """Return the same as `gap_ahead` for a line that begins at (x, y), and the ball's side of it, 1.0 or -1.0.
+
+    side: the one on which it is where it touches the line's middle; 0 where the height tells.
+    """
+    dx, dy = ball.x - x, ball.y - y
+    height = dy * line.ux - dx * line.uy
+    facing = 1.0 if height >= 0.0 else -1.0
+    if abs(height) <= ball.tolerance and side != 0:
+        facing = float(side)
+    beside = line.length == math.inf or is_beside_line(line, dx, dy, ball.tolerance)
+    gap, rate = facing * height - line.offset_radius, facing * (ball.vy * line.ux - ball.vx * line.uy)
+    seconds, closed = gap_ahead(ball, gap, rate, ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy)), beside)
+    if not beside:
+        along, speed = dx * line.ux + dy * line.uy, ball.vx * line.ux + ball.vy * line.uy
+        seconds = max(seconds, _way_beside(ball, along, speed, line.length))
+    return seconds, closed, facing
+
+
+@function
+def _way_beside(ball: Moving, along: float, rate: float, length: float) -> float:
+    """Return for how long [s] a ball surely does not come beside a line of this length [m]; it is not beside it now."""
+    return _step(-along, -rate, ball.pull) if along < 0.0 else _step(along - length, rate, ball.pull)
 
 
 @function
@@ -187,20 +205,10 @@ def _face_ahead(state: State, w: int, k: int, ball: Moving, ahead: Ahead) -> Ahe
         face = state.faces[scene, i]
         if _carries_face(state, w, k, i) or is_off(state, w, face.element):
             continue
-        dx, dy = ball.x - face.x, ball.y - face.y
-        height = dy * face.ux - dx * face.uy
-        facing = 1.0 if height >= 0.0 else -1.0
-        if abs(height) <= ball.tolerance and side_on(state.face_sides, w, k, i) != 0:
-            facing = float(side_on(state.face_sides, w, k, i))
+        side = side_on(state.face_sides, w, k, i)
+        seconds, closed, facing = line_ahead(ball, face_line(face), face.x, face.y, side)
         if facing < 0.0 and is_one_way(state, scene, i):
             continue
-        rate = facing * (ball.vy * face.ux - ball.vx * face.uy)
-        beside = is_beside_line(face_line(face), dx, dy, ball.tolerance)
-        slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
-        seconds, closed = gap_ahead(ball, facing * height - face.offset_radius, rate, slow, beside)
-        if not beside:
-            along, speed = dx * face.ux + dy * face.uy, ball.vx * face.ux + ball.vy * face.uy
-            seconds = max(seconds, way_beside(ball, along, speed, face.length))
         ahead = _sooner(ahead, seconds, closed, ON_FACE, i)
     return ahead
 
@@ -211,13 +219,13 @@ def _circle_ahead(state: State, w: int, k: int, ball: Moving, ahead: Ahead) -> A
     for i in range(state.scenes[scene].circles):
         circle = state.circles[scene, i]
         if not (is_off(state, w, circle.element) or _carries_circle(state, w, k, circle)):
-            seconds, closed = _outside_ahead(ball, ball.x - circle.x, ball.y - circle.y, circle.offset_radius, True)
+            seconds, closed = outside_ahead(ball, ball.x - circle.x, ball.y - circle.y, circle.offset_radius, True)
             ahead = _sooner(ahead, seconds, closed, ON_CIRCLE, i)
     return ahead
 
 
 @function
-def _outside_ahead(ball: Moving, dx: float, dy: float, radius: float, meets: bool) -> tuple[float, bool]:
+def outside_ahead(ball: Moving, dx: float, dy: float, radius: float, meets: bool) -> tuple[float, bool]:
     """Return the same as `gap_ahead` for a circle that is (dx, dy) [m] off, from outside."""
     distance = math.sqrt(dx * dx + dy * dy)
     rate = (ball.vx * dx + ball.vy * dy) / distance
@@ -258,7 +266,7 @@ def _arc_ahead(state: State, w: int, k: int, ball: Moving, ahead: Ahead) -> Ahea
                 continue
             meets = spans and (off or side == 0 or (side > 0) == outside)
             if outside:
-                seconds, closed = _outside_ahead(ball, dx, dy, radius, meets)
+                seconds, closed = outside_ahead(ball, dx, dy, radius, meets)
             else:
                 seconds, closed = _inside_ahead(ball, dx, dy, radius, meets)
             if not spans:

@@ -6,12 +6,12 @@ As `detect.sensors` for flights, by bounded-acceleration advancement.
 import math
 
 from bounce_env.engine.compile.jit import Record, function, routine, where
-from bounce_env.engine.detect.by_advancement import Moving, gap_ahead, least_step, moving_after, way_beside
+from bounce_env.engine.detect.by_advancement import least_step, line_ahead, moving_after, outside_ahead
 from bounce_env.engine.detect.sensors import Crossing, follows_crossing
-from bounce_env.engine.impact.line import Line, is_beside_line
+from bounce_env.engine.impact.line import Line
 from bounce_env.engine.memory.records import CIRCLE_ENTRY, FIELD_BORDER, LINE_SENSOR
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.tolerances import SEARCH_STEPS, ULP, ULPS_OF_SPEED
+from bounce_env.engine.tolerances import SEARCH_STEPS, ULP
 
 
 @routine
@@ -32,8 +32,7 @@ def _first_line(state: State, w: int, k: int, last: Crossing, best: Crossing) ->
     scene = state.worlds[w].scene
     for i in range(state.scenes[scene].sensors):
         sensor, side = state.sensors[scene, i], state.sensor_sides[w, k, i]
-        t = _line_crossing(state, w, k, sensor, sensor.length, side, _begin(last, LINE_SENSOR, i))
-        best = _earlier(t, LINE_SENSOR, i, last, best)
+        best = _earlier_line(state, w, k, sensor, sensor.length, side, LINE_SENSOR, i, last, best)
     return best
 
 
@@ -42,8 +41,7 @@ def _first_border(state: State, w: int, k: int, last: Crossing, best: Crossing) 
     scene = state.worlds[w].scene
     for i in range(state.scenes[scene].fields):
         edge, side = state.field_edges[scene, i], state.field_edge_sides[w, k, i]
-        t = _line_crossing(state, w, k, edge, math.inf, side, _begin(last, FIELD_BORDER, i))
-        best = _earlier(t, FIELD_BORDER, i, last, best)
+        best = _earlier_line(state, w, k, edge, math.inf, side, FIELD_BORDER, i, last, best)
     return best
 
 
@@ -69,22 +67,22 @@ def _earlier(t: float, kind: int, row: int, last: Crossing, best: Crossing) -> C
     return Crossing(t, kind, row) if t < best.after and follows_crossing(t, kind, row, last) else best
 
 
-@routine
-def _line_crossing(state: State, w: int, k: int, row: Record, length: float, side: int, begin: float) -> float:
-    """Return when a ball next crosses a line, a row of a table, from `begin` [s] on; inf if it does not."""
-    end, t = state.balls[w, k].end_after, begin
+@function
+def _earlier_line(
+    state: State, w: int, k: int, row: Record, length: float, side: int, kind: int, i: int, last: Crossing,
+    best: Crossing,
+) -> Crossing:  # fmt: skip
+    """Return the earlier of `best` and the next crossing of a line, row `i` of the table of a kind."""
     line = Line(row.ux, row.uy, length, 0.0)
+    return _earlier(_line_crossing(state, w, k, line, row.x, row.y, side, _begin(last, kind, i)), kind, i, last, best)
+
+
+@routine
+def _line_crossing(state: State, w: int, k: int, line: Line, x: float, y: float, side: int, begin: float) -> float:
+    """Return when a ball next crosses a line that begins at (x, y), from `begin` [s] on; inf if it does not."""
+    end, t = state.balls[w, k].end_after, begin
     for _ in range(16 * SEARCH_STEPS):
-        ball = moving_after(state, w, k, t)
-        dx, dy = ball.x - row.x, ball.y - row.y
-        height, rate = dy * row.ux - dx * row.uy, ball.vy * row.ux - ball.vx * row.uy
-        facing = math.copysign(1.0, height) if abs(height) > ball.tolerance else float(side)
-        beside = length == math.inf or is_beside_line(line, dx, dy, ball.tolerance)
-        slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
-        seconds, crosses = gap_ahead(ball, facing * height, facing * rate, slow, beside)
-        if not beside:
-            along, speed = dx * row.ux + dy * row.uy, ball.vx * row.ux + ball.vy * row.uy
-            seconds = max(seconds, way_beside(ball, along, speed, length))
+        seconds, crosses, _ = line_ahead(moving_after(state, w, k, t), line, x, y, side)
         t += seconds
         if not t <= end:
             return math.inf
@@ -99,12 +97,12 @@ def _circle_entry(state: State, w: int, k: int, ring: Record, outside: bool, beg
     end, t = state.balls[w, k].end_after, begin
     for _ in range(16 * SEARCH_STEPS):
         ball = moving_after(state, w, k, t)
-        gap, rate = _gap_of_circle(ball, ball.x - ring.x, ball.y - ring.y, ring.radius)
+        dx, dy = ball.x - ring.x, ball.y - ring.y
+        gap = math.sqrt(dx * dx + dy * dy) - ring.radius
         if abs(gap) > ball.tolerance:
             outside = gap > 0.0
-        slow = (ULPS_OF_SPEED + ball.tolerance / ring.radius) * (abs(ball.vx) + abs(ball.vy))
         if outside:
-            seconds, enters = gap_ahead(ball, gap, rate, slow, True)
+            seconds, enters = outside_ahead(ball, dx, dy, ring.radius, True)
         else:
             seconds, enters = max(-gap / ball.top_speed, least_step(ball)), False
         t += seconds
@@ -113,10 +111,3 @@ def _circle_entry(state: State, w: int, k: int, ring: Record, outside: bool, beg
         if enters:
             return t
     return math.inf
-
-
-@function
-def _gap_of_circle(ball: Moving, dx: float, dy: float, radius: float) -> tuple[float, float]:
-    """Return how far [m] a ball (dx, dy) from a centre is outside of a circle, and how fast that grows [m/s]."""
-    distance = math.sqrt(dx * dx + dy * dy)
-    return distance - radius, (ball.vx * dx + ball.vy * dy) / distance if distance > 0.0 else 0.0

@@ -147,8 +147,8 @@ def _joints_of_part(state: State, w: int, k: int, search: Search, first: Found) 
         return first
     core = part_core_at(moving_part(state, w, ball.rides), ball.hi, ball.lo)
     if core.back < core.front:
-        for facing in (search.slide.radius, -search.slide.radius):
-            first = _joint_along(search, first, -facing * core.uy, facing * core.ux)
+        for height in (search.slide.radius, -search.slide.radius):
+            first = _joint_along(search, first, -height * core.uy, height * core.ux)
     return first
 
 

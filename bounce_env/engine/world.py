@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.events.loop import LEDGER_FULL
 from bounce_env.engine.memory.records import LEDGER, OUT
@@ -56,6 +57,7 @@ class World:
         self.scene = scene
         self._balls = whole("balls", balls, 1, MAX_BALLS)
         self._state = pack([scene], balls=self._balls, switches=True)
+        self._bound = bind(self._state)
         self._parts = scene.parts
         self._started = False
 
@@ -73,7 +75,7 @@ class World:
         for k, (x, y) in enumerate(at.tolist()):
             at[k] = place_clear(self.scene, cores, x, y)
         separate_placed_balls(self.scene, at)
-        world_reset(self._state, at, speed)
+        world_reset(self._bound, at, speed)
         self._switch_ends()
         self._started = True
 
@@ -107,16 +109,16 @@ class World:
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
         world = self._state.worlds[0]
-        hi, lo = world_begin_call(self._state, seconds)
+        hi, lo = world_begin_call(self._bound, seconds)
         if not ledger:
-            world_advance_to(self._state, hi, lo, max_events, None)
+            world_advance_to(self._bound, hi, lo, max_events, None)
             return None
         pages: list[npt.NDArray[Any]] = []
         page = np.zeros(_LEDGER_ROWS * self._balls, LEDGER)
         code = LEDGER_FULL
         while code == LEDGER_FULL:
             world.rows = 0
-            code = world_advance_to(self._state, hi, lo, max_events, page)
+            code = world_advance_to(self._bound, hi, lo, max_events, page)
             pages.append(page[: world.rows].copy())
         return np.concatenate(pages)
 
@@ -137,7 +139,7 @@ class World:
             raise ValueError(f"command: {shown(name)} must be one of the scene's parts: {sorted(names)}{hint}")
         part = self._parts[names[name]][1]
         if isinstance(part, Wall):
-            world_command_wall(self._state, names[name], _checked_end_velocities(name, value, self.scene.max_speed))
+            world_command_wall(self._bound, names[name], _checked_end_velocities(name, value, self.scene.max_speed))
             return
         if isinstance(part, Flipper):
             if not isinstance(value, bool | np.bool_):
@@ -146,7 +148,7 @@ class World:
         else:
             fastest = part.max_speed if isinstance(part, Paddle) else part.speed
             velocity = _checked_part_speed(name, value, fastest)
-        world_command_part(self._state, names[name], velocity)
+        world_command_part(self._bound, names[name], velocity)
 
     def enable(self, name: str, on: bool) -> None:
         """Switch an element on or off: one that is off is not hit, and a ball that it supports falls. On after `reset`.
@@ -175,7 +177,7 @@ class World:
                     place_clear(self.scene, self._cores(), x, y, disabled=others)
         disabled[0, index] = not on
         self._switch_ends()
-        world_resolve_all(self._state)
+        world_resolve_all(self._bound)
 
     def push(self, change: npt.ArrayLike) -> None:
         """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now.
@@ -186,7 +188,7 @@ class World:
         rows = numbers(change)
         if rows is None or rows.shape != (2,) or not (abs(rows) <= LARGEST).all():
             raise ValueError(f"push = {shown(change)}: must be (dvx, dvy), finite, at most {LARGEST:g} m/s")
-        world_push_balls(self._state, float(rows[0]), float(rows[1]))
+        world_push_balls(self._bound, float(rows[0]), float(rows[1]))
 
     def replace(self, scene: Scene) -> None:
         """Go on in another scene: time, balls and their velocities stay; a part of the same name and kind keeps its
@@ -208,16 +210,17 @@ class World:
             new[name] = old[name]
         self._move_parts(scene, state)
         balls, cores = self._now()[0], np.empty((len(scene.parts), 4))
-        view(state, 0, np.empty((0, 4)), cores)
+        bound = bind(state)
+        view(bound, 0, np.empty((0, 4)), cores)
         for k, (x, y, vx, vy) in enumerate(balls.tolist()):
             if self._state.balls[0, k].status != OUT:
                 x, y = place_clear(scene, _cores_by_index(scene, cores), x, y)  # noqa: PLW2901
-            world_place_ball(state, k, x, y, vx, vy)
+            world_place_ball(bound, k, x, y, vx, vy)
         out = self._state.balls["status"][0] == OUT
         state.balls[0, out] = self._state.balls[0, out]
         for m in range(len(scene.parts)):
-            world_resume_part(state, m)
-        self.scene, self._state, self._parts = scene, state, scene.parts
+            world_resume_part(bound, m)
+        self.scene, self._state, self._bound, self._parts = scene, state, bound, scene.parts
 
     def _move_parts(self, scene: Scene, state: State) -> None:
         """Put the parts of a new scene, at rest, where those of the same name are, with their commands."""
@@ -304,7 +307,7 @@ class World:
     def _now(self) -> tuple[Floats, Floats]:
         self._check_started()
         balls, cores = np.empty((self._balls, 4)), np.empty((len(self._parts), 4))
-        view(self._state, 0, balls, cores)
+        view(self._bound, 0, balls, cores)
         return balls, cores
 
     def _rows(self, name: str, value: npt.ArrayLike) -> Floats:

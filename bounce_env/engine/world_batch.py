@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.compile.jit import borrow, kernel
+from bounce_env.engine.compile.binding import bind
+from bounce_env.engine.compile.jit import kernel
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import DONE, clear_hits, restart, resume, run
 from bounce_env.engine.memory.records import Array
@@ -21,7 +22,6 @@ Floats = npt.NDArray[np.float64]
 
 @kernel
 def _reset(state: State, position: Floats, velocity: Floats) -> None:
-    state = borrow(state)
     for w in range(position.shape[0]):
         restart(state, w)
         place(state, w, 0, position[w, 0], position[w, 1], velocity[w, 0], velocity[w, 1])
@@ -29,7 +29,6 @@ def _reset(state: State, position: Floats, velocity: Floats) -> None:
 
 @kernel
 def _advance(state: State, seconds: float, max_events: int) -> int:
-    state = borrow(state)
     unfinished = 0
     for w in range(state.worlds.shape[0]):
         clear_hits(state, w)
@@ -52,6 +51,7 @@ class WorldBatch:
         if index.ndim != 1 or index.size == 0 or index.min() < 0 or index.max() >= len(self.scenes):
             raise ValueError(f"scene_of: must be one index from 0 to {len(self.scenes) - 1} per world")
         self.state = pack(self.scenes, index.size)
+        self._bound = bind(self.state)
         self.state.worlds["scene"] = index
 
     def reset(self, position: npt.ArrayLike, velocity: npt.ArrayLike) -> None:
@@ -66,18 +66,18 @@ class WorldBatch:
         for row, s in zip(at, self.state.worlds["scene"].tolist(), strict=True):
             scene = self.scenes[s]
             row[:] = place_clear(scene, part_cores_at_start(scene), float(row[0]), float(row[1]))
-        _reset(self.state, at, speed)
+        _reset(self._bound, at, speed)
 
     def advance(self, seconds: float, max_events: int = 1_000_000) -> int:
         """Let `seconds` pass in every world; returns how many ran out of `max_events` before."""
-        return int(_advance(self.state, float(seconds), max_events))
+        return int(_advance(self._bound, float(seconds), max_events))
 
     @property
     def balls(self) -> Floats:
         """x, y [m], vx, vy [m/s] of every world's ball now, shape (worlds, 4)."""
         rows = np.empty((len(self.state.worlds), 4))
         for w in range(len(rows)):
-            view(self.state, w, rows[w : w + 1], np.empty((0, 4)))
+            view(self._bound, w, rows[w : w + 1], np.empty((0, 4)))
         return rows
 
     @property

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.compile.jit import borrow, kernel
+from bounce_env.engine.compile.jit import kernel
 from bounce_env.engine.events.commands import command, command_ends
 from bounce_env.engine.events.crushing import free_all_crushed
 from bounce_env.engine.events.flights import disturb, place
@@ -19,7 +19,6 @@ Floats = npt.NDArray[np.float64]
 
 @kernel
 def world_reset(state: State, position: Floats, velocity: Floats) -> None:
-    state = borrow(state)
     restart(state, 0)
     for k in range(position.shape[0]):
         place(state, 0, k, position[k, 0], position[k, 1], velocity[k, 0], velocity[k, 1])
@@ -36,14 +35,12 @@ def world_begin_call(state: State, seconds: float) -> tuple[float, float]:
 
 @kernel
 def world_advance_to(state: State, hi: float, lo: float, max_events: int, ledger: Any) -> int:
-    state = borrow(state)
     code: int = run(state, 0, hi, lo, max_events, ledger)
     return code
 
 
 @kernel
 def world_push_balls(state: State, dvx: float, dvy: float) -> None:
-    state = borrow(state)
     for k in range(state.balls.shape[1]):
         disturb(state, 0, k, 1.0, dvx, dvy)
 
@@ -51,7 +48,6 @@ def world_push_balls(state: State, dvx: float, dvy: float) -> None:
 @kernel
 def world_resolve_all(state: State) -> None:
     """Resolve every ball anew: an element has been switched on or off."""
-    state = borrow(state)
     free_all_crushed(state, 0)
     for k in range(state.balls.shape[1]):
         disturb(state, 0, k, 1.0, 0.0, 0.0)
@@ -59,24 +55,20 @@ def world_resolve_all(state: State) -> None:
 
 @kernel
 def world_place_ball(state: State, k: int, x: float, y: float, vx: float, vy: float) -> None:
-    state = borrow(state)
     place(state, 0, k, x, y, vx, vy)
 
 
 @kernel
 def world_command_part(state: State, part: int, velocity: float) -> None:
-    state = borrow(state)
     command(state, 0, part, velocity)
 
 
 @kernel
 def world_command_wall(state: State, part: int, velocities: Floats) -> None:
-    state = borrow(state)
     command_ends(state, 0, part, (velocities[0, 0], velocities[0, 1]), (velocities[1, 0], velocities[1, 1]))
 
 
 @kernel
 def world_resume_part(state: State, part: int) -> None:
     """Let a part move on as it was commanded to, before any flight is planned: no ball has to mind it yet."""
-    state = borrow(state)
     resume_part(state, 0, part)

@@ -10,6 +10,7 @@ from gymnasium import spaces
 from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
+from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.memory.records import OUT, Array
 from bounce_env.engine.memory.state import State, copy_of_world
 from bounce_env.engine.motion.readout import view
@@ -160,7 +161,7 @@ class Frames:
         if at_bounce and _has_bounced(shown, w):
             shown, row = _at_flight_start(shown, w), 0
         balls, cores = np.empty((shown.balls.shape[1], 4)), np.empty((len(scene.parts), 4))
-        view(shown, row, balls, cores)
+        view(batch.bound_state if shown is batch.state else bind(shown), row, balls, cores)
         world = shown.worlds[row]
         return Picture(
             balls=balls[:, :2],

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import interpreted
 from bounce_env.engine.memory.records import Array
 from bounce_env.engine.memory.state import State, moving_arrays
@@ -21,8 +22,8 @@ from bounce_env.games.episode import (
     SAME_STEP,
     TIME_LIMIT,
     GameState,
+    Handle,
     Results,
-    bind,
     close_books,
     new_results,
 )
@@ -84,9 +85,14 @@ class Batch:
         reset_worlds(self._bound(), mask)
         self._start[:] = np.nan
 
+    @cached_property
+    def bound_state(self) -> Any:
+        """The state as the engine's kernels get it."""
+        return bind(self.state)
+
     def _bound(self) -> Any:
         if self._handle is None:
-            self._handle = bind(self.rules, self._all())
+            self._handle = bind(Handle(self.rules, self._all()))
         return self._handle
 
     def _all(self) -> GameState:
@@ -186,7 +192,7 @@ class Batch:
         """Balls (1, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of a world now."""
         parts = self.state.parts
         balls, cores = np.empty((1, 4)), np.empty((0 if parts is None else parts.shape[1], 4))
-        view(self.state, world, balls, cores)
+        view(self.bound_state, world, balls, cores)
         return balls, cores
 
     @property

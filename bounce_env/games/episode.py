@@ -1,13 +1,10 @@
 """What every game keeps for each world beside the engine's state, and what it says of an episode."""
 
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
-from numba.experimental import structref
 
-from bounce_env.engine.compile.jit import Record, function, kernel
+from bounce_env.engine.compile.jit import Record, function
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.memory.state import State
 from bounce_env.games.streams import EPISODES, STICKY_ACTIONS, bits, uniform
@@ -65,30 +62,11 @@ class GameState(NamedTuple):
     results: Results
 
 
-@structref.register
-class _HandleType(numba.types.StructRef):  # type: ignore[misc]
-    def preprocess_fields(self, fields: Any) -> Any:
-        return tuple((name, numba.types.unliteral(kind)) for name, kind in fields)
+class Handle(NamedTuple):
+    """All that a game's kernels get, bound as one."""
 
-
-class Handle(structref.StructRefProxy):  # type: ignore[misc]
-    """One object in place of fifty arrays: calling a kernel with it costs 1 us, not 10."""
-
-    def __new__(cls, *parts: Any) -> Any:
-        return structref.StructRefProxy.__new__(cls, *parts)
-
-
-structref.define_proxy(Handle, _HandleType, ["rules", "game"])
-
-
-@kernel
-def _bind_compiled(rules: Any, game: GameState) -> Any:
-    return Handle(rules, game)
-
-
-def bind(rules: Any, game: GameState) -> Any:
-    """Return a handle to all that a game's kernels work on; it keeps the arrays alive."""
-    return SimpleNamespace(rules=rules, game=game) if numba.config.DISABLE_JIT else _bind_compiled(rules, game)
+    rules: Any  # the game's own, see `games.rules`
+    game: GameState
 
 
 def new_results(worlds: int, size: int, counters: int) -> Results:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from bounce_env.engine.compile.jit import borrow, function, kernel
+from bounce_env.engine.compile.jit import function, kernel
 from bounce_env.engine.memory.records import Array
 from bounce_env.games.episode import (
     ALL_PLAYED,
@@ -47,7 +47,7 @@ def observe(rules: Any, game: GameState, w: int, out: Array) -> None:
 @kernel
 def reset_worlds(handle: Any, mask: Array) -> None:
     """Begin an episode in every world that `mask` names, launched as `handle.start` says."""
-    game, rules = borrow(handle.game), borrow(handle.rules)
+    game, rules = handle.game, handle.rules
     results = game.results
     for w in range(mask.shape[0]):
         if mask[w]:
@@ -66,7 +66,7 @@ def step_worlds(handle: Any, actions: Array, autoreset: int, first: int, last: i
     whose episode has ended is reset in place of a step (NEXT_STEP), was reset at its end (SAME_STEP), or must have been
     reset by the caller (DISABLED).
     """
-    game, rules = borrow(handle.game), borrow(handle.rules)
+    game, rules = handle.game, handle.rules
     results, episodes = game.results, game.episodes
     if not _all_finite(actions):
         return -1

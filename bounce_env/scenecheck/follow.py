@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.engine.compile.jit import borrow, function, kernel
+from bounce_env.engine.compile.jit import function, kernel
 from bounce_env.engine.events.flights import place
 from bounce_env.engine.events.loop import BUDGET_SPENT, DONE, clear_hits, restart, resume, run
 from bounce_env.engine.memory.records import CRUSHED, HELD, OUT, Array, record
@@ -137,8 +137,6 @@ def follow_balls(
     touched: (elements,) by how many balls; freely: by how many of those that also drained or came within reach. Both
     are added to.
     """
-    state = borrow(state)
-    starts, fates = borrow(starts), borrow(fates)
     seen = np.zeros(touched.shape[0], np.int8)
     for i in range(starts.shape[0]):
         seen[:] = 0

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.packing import pack
 from bounce_env.games.episode import FPS
 from bounce_env.games.timing import MAX_EVENTS
@@ -68,8 +69,8 @@ def survey(
     inside = inside_of(scene)
     starts = random_starts(scene, inside, balls, seed)
     watched = with_borders(scene)
-    state = pack([watched])
-    watch = _watch(scene, len(watched.elements), seconds, limit)
+    state = bind(pack([watched]))
+    watch = bind(_watch(scene, len(watched.elements), seconds, limit))
     fates = np.zeros(balls, FATE)
     touched, freely = np.zeros((2, len(watched.elements)), np.int64)
     for first in range(0, balls, BALLS_AT_ONCE):

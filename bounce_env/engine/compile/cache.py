@@ -16,6 +16,8 @@ import numba
 from numba.core import caching
 from numba.core import types as nb_types
 
+from bounce_env.engine.compile.binding import BoundType
+
 PACKAGE = Path(__file__).resolve().parents[2]
 
 _foreign: dict[type, str | None] = {}
@@ -170,15 +172,11 @@ def _foreign_kinds(sig: Any) -> list[type]:
 
 
 def _named_tuples_of(argument: Any) -> Iterator[type]:
-    if isinstance(argument, nb_types.BaseNamedTuple):  # type: ignore[attr-defined]
+    if isinstance(argument, nb_types.BaseNamedTuple | BoundType):  # type: ignore[attr-defined]
         yield argument.instance_class
-    members: tuple[Any, ...] = ()
-    if isinstance(argument, nb_types.BaseTuple):  # type: ignore[attr-defined]
-        members = argument.types
-    elif isinstance(argument, nb_types.StructRef):  # type: ignore[attr-defined]
-        members = tuple(kind for _, kind in argument._fields)
-    for member in members:
-        yield from _named_tuples_of(member)
+    if isinstance(argument, nb_types.BaseTuple | BoundType):  # type: ignore[attr-defined]
+        for member in argument.types:
+            yield from _named_tuples_of(member)
 
 
 def cache_folder(compiled: Callable[..., Any]) -> str | None:

@@ -16,9 +16,8 @@ from typing import Any, TypeVar
 
 import numba
 import numpy as np
-from numba.core import cgutils
 from numba.core import types as nb_types
-from numba.extending import intrinsic, overload
+from numba.extending import overload
 
 from bounce_env.engine.compile.cache import KernelCache, NoCache
 from bounce_env.engine.compile.pipeline import InnerCompiler, KernelCompiler
@@ -30,7 +29,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 POLICY: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 
 # Without their wrappers for Python and C, which nobody calls, functions compile twice as fast. Nothing in them makes an
-# array, and kernels borrow theirs: without reference counts they compile faster by another fifth.
+# array, and those that are bound have no owner: without reference counts they compile faster by another fifth.
 INLINED = {
     **POLICY,
     "forceinline": True,
@@ -124,36 +123,3 @@ def _constantly(value: Any) -> Callable[..., Any]:
         return value
 
     return constant
-
-
-def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """Return a value of which no array, however deep in tuples it lies, says who owns its memory."""
-    if isinstance(kind, nb_types.Array):
-        array = context.make_array(kind)(context, builder, value=value)
-        array.meminfo = cgutils.get_null_value(array.meminfo.type)
-        array.parent = cgutils.get_null_value(array.parent.type)
-        return array._getvalue()
-    if isinstance(kind, nb_types.BaseTuple):  # type: ignore[attr-defined]
-        for i, member in enumerate(kind.types):
-            bare = _without_owner(context, builder, member, builder.extract_value(value, i))
-            value = builder.insert_value(value, bare, i)
-    return value
-
-
-def _borrowed(typing_context: Any, argument: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return _without_owner(context, builder, argument, values[0])
-
-    return argument(argument), generate
-
-
-def _borrow_interpreted(argument: Any) -> Any:
-    return argument
-
-
-borrow = _borrow_interpreted if numba.config.DISABLE_JIT else intrinsic(_borrowed)
-"""The same array, or (named) tuple of arrays, tuples and numbers, without reference counts.
-
-Numba counts references at every call that an array is passed to, atomically; over a batch that costs more than the
-physics. A kernel borrows its arguments once: its caller holds them for as long as it runs.
-"""

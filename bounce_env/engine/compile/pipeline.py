@@ -11,8 +11,24 @@ from typing import Any
 from llvmlite.binding import Linkage
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
-from numba.core.compiler_machinery import LoweringPass, register_pass
-from numba.core.typed_passes import NativeLowering
+from numba.core.compiler_machinery import LoweringPass, PassManager, register_pass
+from numba.core.typed_passes import (
+    IRLegalization,
+    NativeLowering,
+    NoPythonBackend,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+)
+from numba.core.untyped_passes import (
+    DeadBranchPrune,
+    FixupArgs,
+    GenericRewrites,
+    InlineInlinables,
+    IRProcessing,
+    ReconstructSSA,
+    RewriteSemanticConstants,
+    TranslateByteCode,
+)
 
 
 class _Library(JITCodeLibrary):  # type: ignore[misc]
@@ -95,12 +111,25 @@ class _KernelLowering(LoweringPass):  # type: ignore[misc]
         return bool(NativeLowering().run_pass(state))
 
 
+# Numba's passes without those for what our functions do not have: closures, comprehensions, `with`, `raise` of what is
+# not constant, arithmetic of whole arrays. Each would cost as much as one that finds something.
+_INNER_PASSES = (
+    TranslateByteCode, FixupArgs, IRProcessing, RewriteSemanticConstants, DeadBranchPrune, GenericRewrites,
+    InlineInlinables, ReconstructSSA, DeadBranchPrune, NopythonTypeInference, PreLowerStripPhis, IRLegalization,
+    _InnerLowering, NoPythonBackend,
+)  # fmt: skip
+
+
 class InnerCompiler(CompilerBase):  # type: ignore[misc]
     """Numba's pipeline for what only kernels call."""
 
     def define_pipelines(self) -> list[Any]:
         """See numba.core.compiler."""
-        return [_with_lowering(self.state, _InnerLowering)]
+        manager = PassManager("bounce_env_inner")
+        for step in _INNER_PASSES:
+            manager.add_pass(step, step.__name__)
+        manager.finalize()
+        return [manager]
 
 
 class KernelCompiler(CompilerBase):  # type: ignore[misc]

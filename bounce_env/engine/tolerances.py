@@ -65,11 +65,8 @@ SMALLEST_REBOUND = 0.01
 CORNER = 64.0
 
 # A ball that has bounced so many times in a row, each time after a way of no more than CORNER tolerances, is between
-# surfaces that leave it no room: it touches all that are so near. If that does not end it, it stands, as balls do that
-# keep hitting each other; and again after some more.
+# surfaces that leave it no room: it touches all that are so near.
 BOUNCES_WITHOUT_ROOM = 1024
-BOUNCES_BEFORE_STANDING = 2048
-BOUNCES_AFTER_STANDING = 64
 
 # A ball that a part strikes is crushed where what is nearer to it than this share of the scene's extent leaves it no
 # velocity to get away: 6e-5 of it, a tenth of a millimetre on a table.

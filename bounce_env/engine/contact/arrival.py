@@ -3,12 +3,13 @@
 import math
 
 from bounce_env.engine.compile.jit import function, where
+from bounce_env.engine.detect.pairs import note_way
 from bounce_env.engine.memory.lookup import side_of_part
 from bounce_env.engine.memory.records import NEXT_PART, OFF_END, ON_ARC, ON_CIRCLE, ON_FACE
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import moving_part, nearest_on_core, part_core_at
 from bounce_env.engine.motion.path import acceleration_in, motion_after, path_length_bound
-from bounce_env.engine.tolerances import CORNER, ROOM_TO_MEET, SEARCH_ENDS, ULPS_OF_LENGTH
+from bounce_env.engine.tolerances import CORNER, SEARCH_ENDS, ULPS_OF_LENGTH
 
 
 @function
@@ -19,9 +20,7 @@ def end_flight(state: State, w: int, k: int, t: float, hi: float, lo: float) -> 
     ball.tolerance = ULPS_OF_LENGTH * (extent + way)
     if way > CORNER * ULPS_OF_LENGTH * extent:
         ball.confined = 0
-    ball.strayed += way
-    if ball.strayed > ROOM_TO_MEET * extent:
-        ball.strayed, ball.meets = 0.0, 0
+    note_way(state, w, k, way)
     motion = motion_after(state, w, k, t)
     ball.ax, ball.ay = acceleration_in(state, w, k, t, motion)
     ball.x, ball.y, ball.vx, ball.vy = motion

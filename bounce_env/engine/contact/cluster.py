@@ -122,7 +122,7 @@ def _list_surfaces(state: State, w: int, i: int, first: bool, count: int, ledger
     """
     ball, scene, member = state.balls[w, i], state.worlds[w].scene, state.members[w, i]
     collect_touches(state, w, i)
-    slowest = math.inf if has_no_room(state, ball) else slowest_rebound(state, w, ball)
+    slowest = math.inf if has_no_room(state, w, i) else slowest_rebound(state, w, ball)
     fast, _ = fastest_closing(ball, state.touches, w, slowest)
     member.hits = 0
     if fast >= 0 and ball.status != CRUSHED:
@@ -190,7 +190,7 @@ def _is_hit(state: State, w: int, contact: Record) -> bool:
     """Return whether two balls in contact close so fast on each other that they bounce by the law."""
     one, other = state.balls[w, contact.one], state.balls[w, contact.other]
     closing = -((one.vx - other.vx) * contact.nx + (one.vy - other.vy) * contact.ny)
-    return closing > slowest_pair_rebound(state, w, one, other)
+    return closing > slowest_pair_rebound(state, w, contact.one, contact.other)
 
 
 @function
@@ -230,7 +230,10 @@ def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> bool:
         if contact.least > 0.0 and _opening(state, w, contact) <= 0.0:
             contact.target = drive + contact.least
     slack = ULPS_OF_SPEED * fastest
-    if not project(state, w, count, slack) and _squeeze(state, w, count):
+    possible = project(state, w, count, slack)
+    if not possible and _slip(state, w):
+        possible = project(state, w, count, slack)
+    if not possible and _squeeze(state, w, count):
         return False
     # Less than what lifts a ball by the tolerance only keeps closed what was.
     least = 4.0 * slack + math.sqrt(2.0 * pull * CLUSTER_GAP * state.scenes[state.worlds[w].scene].extent)
@@ -241,7 +244,23 @@ def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> bool:
         if state.members[w, i].inside:
             ball, member = state.balls[w, i], state.members[w, i]
             ball.vx, ball.vy = member.x, member.y
+    _keep_closed(state, w, count, slack)
     return True
+
+
+@function
+def _keep_closed(state: State, w: int, count: int, slack: float) -> None:
+    """Take from the velocities what closes on a surface by no more than `slack` [m/s].
+
+    To a slow member the rounding of faster ones is a speed with which it would hit again.
+    """
+    for p in range(count):
+        contact = state.contacts[w, p]
+        if contact.other < 0 and not state.members[w, contact.one].fixed:
+            ball = state.balls[w, contact.one]
+            rest = contact.target - (ball.vx * contact.nx + ball.vy * contact.ny)
+            if 0.0 < rest <= slack:
+                ball.vx, ball.vy = ball.vx + rest * contact.nx, ball.vy + rest * contact.ny
 
 
 @where("parts", otherwise=False)
@@ -252,7 +271,8 @@ def _squeeze(state: State, w: int, count: int) -> bool:
         contact = state.contacts[w, p]
         if contact.opposes and contact.part >= 0 and contact.ux * contact.nx + contact.uy * contact.ny > 0.0:
             ball = state.balls[w, contact.one]
-            ball.struck, ball.doomed, state.members[w, contact.one].hits, crushed = contact.part, 1, 1, True
+            member = state.members[w, contact.one]
+            ball.struck, member.doomed, member.hits, crushed = contact.part, 1, 1, True
     return crushed
 
 
@@ -273,6 +293,17 @@ def _hold(state: State, w: int, count: int, ledger: Table) -> None:
             if vx != ball.vx or vy != ball.vy:
                 surface = Surface(contact.element, contact.nx, contact.ny, contact.ux, contact.uy)
                 append_contact(ledger, state.worlds[w], ball, contact.one, ABSORBED, surface, vx, vy)
+
+
+@function
+def _slip(state: State, w: int) -> bool:
+    """Let the members go that friction holds: held, they close on something. Returns whether there are any."""
+    any_held = False
+    for i in range(state.members.shape[1]):
+        member = state.members[w, i]
+        if member.inside and member.fixed and state.balls[w, i].status != CRUSHED:
+            member.fixed, any_held = 0, True
+    return any_held
 
 
 @function

@@ -50,7 +50,8 @@ def collide(state: State, w: int, k: int, j: int, hi: float, lo: float, ledger: 
     if abs(apart) > ULPS_OF_LENGTH * head.extent:
         keep_beside(state, w, k)
         keep_beside(state, w, j)
-    one.meets, other.meets = one.meets + 1, other.meets + 1
+    for i in (k, j):
+        state.members[w, i].meets += 1
     if _lie_on_each_other(state, w, k, j, nx, ny, distance):
         resolve_cluster(state, w, k, ledger)
         return
@@ -69,7 +70,7 @@ def _lie_on_each_other(state: State, w: int, k: int, j: int, nx: float, ny: floa
     Where hits have no room any more any speed will do. Elastic hits of balls in a row end by themselves.
     """
     one, other = state.balls[w, k], state.balls[w, j]
-    slowest = slowest_pair_rebound(state, w, one, other)
+    slowest = slowest_pair_rebound(state, w, k, j)
     if -((one.vx - other.vx) * nx + (one.vy - other.vy) * ny) > slowest:
         return False
     if slowest == math.inf or is_pressed_by_balls(state, w, k) or is_pressed_by_balls(state, w, j):

@@ -4,8 +4,6 @@ Ever smaller bounces that lead to a contact with a straight surface are summed i
 "Infinitely many bounces").
 """
 
-import math
-
 from bounce_env.engine.compile.jit import Record, Table, function
 from bounce_env.engine.contact.bounces import GOES_ON, bounce_from_all, take_soft
 from bounce_env.engine.contact.cluster import resolve_cluster
@@ -19,7 +17,6 @@ from bounce_env.engine.contact.restitution import (
     normal_load,
     push_off,
     slow_speed,
-    surface_speed,
 )
 from bounce_env.engine.contact.sides import update_crossing_sides
 from bounce_env.engine.contact.smallest_rebound import leave_part
@@ -27,6 +24,7 @@ from bounce_env.engine.contact.touching import collect_touches, keep_outside_tou
 from bounce_env.engine.detect.pairs import is_pressed_by_balls, plan_pairs
 from bounce_env.engine.detect.schedule import schedule_resolve, schedule_rest, schedule_standing
 from bounce_env.engine.memory.ledger import Surface, append_contact
+from bounce_env.engine.memory.lookup import is_doomed
 from bounce_env.engine.memory.records import (
     CARRIED_ALONG,
     CONTACT_BEGINS,
@@ -34,7 +32,6 @@ from bounce_env.engine.memory.records import (
     CRUSHED,
     FLYING,
     HELD,
-    JAMMED,
     NEXT_PART,
     ON_CURVE,
     RESOLVE,
@@ -43,14 +40,10 @@ from bounce_env.engine.memory.records import (
 )
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import (
-    BOUNCES_AFTER_STANDING,
-    BOUNCES_BEFORE_STANDING,
     BOUNCES_WITHOUT_ROOM,
-    CLEARANCE,
     CORNER,
     STANDING,
     ULPS_OF_LENGTH,
-    WEIGHTLESS,
 )
 
 NOT_PLANNED = -2.0
@@ -63,7 +56,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     at_once: whether its flight has ended where it began, by something that it was to hit.
     """
     ball = state.balls[w, k]
-    if ball.doomed:
+    if is_doomed(state, w, k):
         ball.status = CRUSHED
         return
     if is_pressed_by_balls(state, w, k):
@@ -80,61 +73,15 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
     collect_touches(state, w, k)
     if state.parts is not None:
         keep_outside_touched(ball, state.touches, w)
-    if settling != JAMMED and _is_stuck_at_resolve(ball, state.touches, w, extent):
-        _resolve_stop(state, w, k, ledger)
-        settling = JAMMED
-    if settling == JAMMED:
-        duration = _resolve_standing(state, w, k, extent, ledger)
-    else:
-        if settling == SETTLES:
-            contact, support = FLYING, -1  # that contact had not begun yet
-        duration = _resolve_bounces(state, w, k, contact, support, at_once, ledger)
-        if duration == NOT_PLANNED:
-            return
+    if settling == SETTLES:
+        contact, support = FLYING, -1  # that contact had not begun yet
+    duration = _resolve_bounces(state, w, k, contact, support, at_once, ledger)
+    if duration == NOT_PLANNED:
+        return
     if duration >= 0.0:
         ball.hit_kind, ball.hit_after, ball.end_after = RESOLVE, duration, duration
     schedule_rest(state, w, k)
     plan_pairs(state, w, k)
-
-
-@function
-def _is_stuck_at_resolve(ball: Record, touches: Table, w: int, extent: float) -> bool:
-    """Return whether a ball keeps bouncing without room, and none of the surfaces comes nearer while it would stand."""
-    if ball.touched == 0 or ball.confined <= BOUNCES_BEFORE_STANDING:
-        return False
-    seconds = _standing_time(ball, extent)
-    for i in range(ball.touched):
-        closing = surface_speed(touches[w, i])
-        if closing > 0.0 and not closing * seconds <= ball.tolerance:
-            return False
-    return True
-
-
-@function
-def _resolve_stop(state: State, w: int, k: int, ledger: Table) -> None:
-    """Stop a ball that keeps bouncing between surfaces which leave it no room."""
-    ball = state.balls[w, k]
-    vx, vy = ball.vx, ball.vy
-    ball.vx, ball.vy = 0.0, 0.0
-    ball.confined = BOUNCES_BEFORE_STANDING - BOUNCES_AFTER_STANDING
-    count_bounce(state, w, k, state.touches[w, 0], vx, vy, ledger)
-
-
-@function
-def _standing_time(ball: Record, extent: float) -> float:
-    """Return how long [s] falling by a clearance takes."""
-    g = math.sqrt(ball.gx * ball.gx + ball.gy * ball.gy)
-    return math.sqrt(2.0 * CLEARANCE * extent / g) if g > WEIGHTLESS else math.inf
-
-
-@function
-def _resolve_standing(state: State, w: int, k: int, extent: float, ledger: Table) -> float:
-    """Let a ball that is jammed stand for as long as falling by a clearance would take; returns that duration [s]."""
-    ball = state.balls[w, k]
-    if ball.support >= 0:
-        _log_end(state, w, k, ball.support, ball.vx, ball.vy, ledger)
-    ball.contact, ball.rides, ball.support, ball.ax, ball.ay = HELD, -1, -1, 0.0, 0.0
-    return _standing_time(ball, extent)
 
 
 @function
@@ -169,7 +116,7 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
     if corner >= 0:
         count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
     # Where something closes on it, a ball without room is bounced from a corner at once, for ever.
-    met_nothing = state.worlds[w].bounces == bounces or ball.confined > BOUNCES_BEFORE_STANDING
+    met_nothing = state.worlds[w].bounces == bounces or ball.confined > BOUNCES_WITHOUT_ROOM
     if ball.contact == FLYING:
         leave_part(state, w, k, at_once and met_nothing, ledger)
     update_crossing_sides(state, w, k)

@@ -17,6 +17,7 @@ from bounce_env.engine.motion.path import is_bent
 from bounce_env.engine.tolerances import (
     MEETINGS_WITHOUT_ROOM,
     PRESSING,
+    ROOM_TO_MEET,
     SLOW_HIT,
     ULPS_OF_SPEED,
 )
@@ -141,11 +142,26 @@ def is_pressed_by_balls(state: State, w: int, k: int) -> bool:
     return pressed
 
 
+@where("members")
+def forget_meetings(state: State, w: int, k: int) -> None:
+    """Let a ball have hit no others: it has come somewhere else."""
+    state.members[w, k].meets, state.members[w, k].strayed = 0, 0.0
+
+
+@where("members")
+def note_way(state: State, w: int, k: int, way: float) -> None:
+    """Note that a ball has come `way` metres, which may be room enough."""
+    member = state.members[w, k]
+    member.strayed += way
+    if member.strayed > ROOM_TO_MEET * state.scenes[state.worlds[w].scene].extent:
+        forget_meetings(state, w, k)
+
+
 @function
-def has_no_room(state: State, ball: Record) -> bool:
+def has_no_room(state: State, w: int, k: int) -> bool:
     """Return whether a ball keeps hitting others without coming any further."""
     balls = state.balls.shape[1]
-    return ball.meets > MEETINGS_WITHOUT_ROOM + 4 * balls * balls
+    return state.members[w, k].meets > MEETINGS_WITHOUT_ROOM + 4 * balls * balls
 
 
 @function
@@ -160,11 +176,11 @@ def slowest_rebound(state: State, w: int, ball: Record) -> float:
 
 
 @function
-def slowest_pair_rebound(state: State, w: int, one: Record, other: Record) -> float:
-    """Return the same of a hit of two balls; inf where neither has any room."""
-    if has_no_room(state, one) and has_no_room(state, other):
+def slowest_pair_rebound(state: State, w: int, k: int, j: int) -> float:
+    """Return the same of a hit of balls `k` and `j`; inf where neither has any room."""
+    if has_no_room(state, w, k) and has_no_room(state, w, j):
         return math.inf
-    return max(slowest_rebound(state, w, one), slowest_rebound(state, w, other))
+    return max(slowest_rebound(state, w, state.balls[w, k]), slowest_rebound(state, w, state.balls[w, j]))
 
 
 @function

@@ -16,7 +16,7 @@ from bounce_env.engine.events.part_stops import (
     turns_back,
 )
 from bounce_env.engine.memory.ledger import Surface, append_contact
-from bounce_env.engine.memory.lookup import side_of_part
+from bounce_env.engine.memory.lookup import let_off, side_of_part
 from bounce_env.engine.memory.records import CRUSH, CRUSHED, HELD, OK
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import (
@@ -42,7 +42,8 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
     nx, ny, _, ux, uy = _surface_at_ball(ball, moving_part(state, w, m), side, world.time_hi, world.time_lo)
     motion, shape = state.motions[w, m], state.parts[world.scene, m]
     if turns_back(motion, shape, kept_part_offset(motion, shape, world.time_hi, world.time_lo)):
-        ball.status, ball.struck, ball.doomed = OK, -1, 0
+        ball.status = OK
+        let_off(state, w, k)
         schedule_resolve(ball)
     else:
         vx, vy = ball.vx, ball.vy
@@ -116,7 +117,8 @@ def _free_crushed(state: State, w: int, k: int, m: int) -> None:
     """Let a crushed ball go on, and what crushed it, unless that is part `m`, which has been told where to."""
     ball = state.balls[w, k]
     crusher = ball.struck
-    ball.status, ball.struck, ball.doomed = OK, -1, 0
+    ball.status = OK
+    let_off(state, w, k)
     disturb(state, w, k, 1.0, 0.0, 0.0)
     if crusher != m and crusher >= 0:
         end_rides(state, w, crusher)

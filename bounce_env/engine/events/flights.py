@@ -4,8 +4,9 @@ from bounce_env.engine.compile.jit import routine, where
 from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.sides import update_crossing_sides, update_sides
 from bounce_env.engine.contact.start_sides import set_initial_sides
-from bounce_env.engine.detect.pairs import plan_pairs
+from bounce_env.engine.detect.pairs import forget_meetings, plan_pairs
 from bounce_env.engine.detect.schedule import schedule_resolve
+from bounce_env.engine.memory.lookup import let_off
 from bounce_env.engine.memory.records import CRUSHED, FLYING, OK, OUT, RESOLVE
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.fields import accelerate
@@ -23,8 +24,9 @@ def place(state: State, w: int, k: int, x: float, y: float, vx: float, vy: float
     ball.hi, ball.lo = world.time_hi, world.time_lo
     ball.status = OK
     ball.contact, ball.rides, ball.support, ball.settling = FLYING, -1, -1, 0
-    ball.struck, ball.doomed = -1, 0
-    ball.confined, ball.strayed, ball.meets = 0, 0.0, 0
+    ball.confined = 0
+    let_off(state, w, k)
+    forget_meetings(state, w, k)
     ball.tolerance = ULPS_OF_LENGTH * state.scenes[world.scene].extent
     set_initial_sides(state, w, k)
     accelerate(state, w, k)

@@ -8,7 +8,7 @@ from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.detect.schedule import schedule_parts
 from bounce_env.engine.events.flights import disturb
 from bounce_env.engine.memory.ledger import append_stop
-from bounce_env.engine.memory.lookup import side_of_part
+from bounce_env.engine.memory.lookup import let_off, side_of_part
 from bounce_env.engine.memory.records import CRUSHED, OUT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.dragged_wall import (
@@ -152,7 +152,7 @@ def _release_caught(state: State, w: int, m: int) -> None:
     for k in range(state.balls.shape[1]):
         ball = state.balls[w, k]
         if ball.struck == m and ball.status != CRUSHED:
-            ball.struck, ball.doomed = -1, 0
+            let_off(state, w, k)
 
 
 @function

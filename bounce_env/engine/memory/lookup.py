@@ -47,3 +47,21 @@ def side_on(sides: Table, w: int, k: int, i: int) -> int:
 def is_sliding(ball: Record) -> bool:
     """Return whether a ball moves along a wall, the straight side of a part, or what it and others lie on."""
     return ball.contact >= 0 or ball.contact in (RIDING, ON_BALLS)
+
+
+@where("members", otherwise=False)
+def is_doomed(state: State, w: int, k: int) -> bool:
+    """Return whether a part is to crush the ball at its next event."""
+    return bool(state.members[w, k].doomed)
+
+
+@function
+def let_off(state: State, w: int, k: int) -> None:
+    """Let no part be the one that has struck the ball, and is to crush it."""
+    state.balls[w, k].struck = -1
+    _undoom(state, w, k)
+
+
+@where("members")
+def _undoom(state: State, w: int, k: int) -> None:
+    state.members[w, k].doomed = 0

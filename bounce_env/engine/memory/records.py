@@ -72,18 +72,17 @@ BALL = record(
     contact="i8",  # the face that the ball slides on, FLYING, HELD, RIDING, ON_CURVE ...
     rides="i8",  # the part that carries it, sliding or held; otherwise -1
     support="i8",  # the element that it is in contact with, -1 in free flight
-    settling="i8",  # SETTLES while the last bounces before a contact are summed, JAMMED, LEANS on balls, or 0
+    settling="i8",  # SETTLES while the last bounces before a contact are summed, LEANS on balls, or 0
     nx="f8", ny="f8",  # normal of that contact, to the ball
     tolerance="f8",  # [m] what counts as touching at that instant
     touched="i8",  # how many surfaces it touched when it was last resolved
     confined="i8",  # how often it has bounced since it last flew any way to speak of, see BOUNCES_WITHOUT_ROOM
-    meets="i8", strayed="f8",  # hits of other balls without room, and the way [m] since: see ROOM_TO_MEET
     hit_after="f8", hit_kind="i8", hit_index="i8",  # duration to the next hit of a standing element
     end_after="f8",  # duration after which nothing is met in this flight: that hit, or having left the scene
     sensor_after="f8", sensor_kind="i8", sensor_index="i8",
     zone_after="f8",  # duration to the next entry into or exit from a zone that a part can reach
     part_hi="f8", part_lo="f8", part_index="i8",  # next hit of a moving part, as far as its velocity is known
-    struck="i8", doomed="i8",  # the part that crushed it, or -1; 1: that does at its next event, see `contact.cluster`
+    struck="i8",  # the part that crushed it, or -1
 )  # fmt: skip
 CURVE_SLIDE = record(  # of a ball that slides on a circle or an arc, see `motion.curve_slide`
     x="f8", y="f8", radius="f8", down_x="f8", down_y="f8",
@@ -134,7 +133,11 @@ CONTACT = record(  # between a ball and a surface, or another ball, of a cluster
     face="i8",
     part="i8",
 )
-MEMBER = record(  # of a cluster that is resolved, by ball
+MEMBER = record(  # what a ball among others has beside BALL
+    meets="i8",
+    strayed="f8",  # hits of other balls without room, and the way [m] since: see ROOM_TO_MEET
+    doomed="i8",  # 1: the part that it is `struck` by crushes it at its next event, see `contact.cluster`
+    # Of the cluster that is resolved:
     inside="i8",  # 0: it is not of the cluster
     fixed="i8",  # 1: nothing moves it
     hits="i8",  # 1: it closes fast on a surface
@@ -214,7 +217,7 @@ CLOSED, MINOR, MAJOR = 0, 1, 2
 FLYING, HELD, RIDING, ON_CURVE, ON_BALLS, CARRIED_ALONG = -1, -2, -3, -4, -5, -6
 
 # `settling`
-SETTLES, JAMMED, LEANS = 1, 2, 3
+SETTLES, LEANS = 1, 2
 
 # Kinds of a ball's next event.
 NEXT_HIT, NEXT_PART, NEXT_SENSOR, NEXT_ZONE = 0, 1, 2, 3

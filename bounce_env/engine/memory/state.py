@@ -64,7 +64,7 @@ class State(NamedTuple):
     carried: Table  # (worlds, balls) CARRIED; None where no part moves by what is round
     pairs: Table  # (worlds, balls, balls) PAIR, by the later and the earlier ball; None for one ball, and points
     touches: Array  # (worlds, TOUCHES) TOUCH: what a ball touches at the instant that is resolved
-    members: Table  # (worlds, balls) MEMBER: the balls of the cluster that is resolved; these four None as `pairs`
+    members: Table  # (worlds, balls) MEMBER: what balls among others have beside; these four None as `pairs`
     contacts: Table  # (worlds, TOUCHES + CONTACTS_OF_BALL balls) CONTACT: between them and what they touch
     actives: Table  # (worlds, 2 balls) ACTIVE: those that a projection has found to act
     factors: Table  # (worlds, 2 balls, 2 balls) the Cholesky factor of their products

@@ -253,7 +253,7 @@ def _bear(state: State, w: int, k: int, count: int, ledger: Table) -> None:
 def _set_contact(state: State, w: int, k: int, surface: int, count: int) -> None:
     """Let a member slide on the surface that bears most of it, if that is straight, or be borne by balls.
 
-    Between two surfaces it stays exactly where it is.
+    Between two surfaces that stand it stays exactly where it is; two that translate carry it in one uniform motion.
     """
     ball = state.balls[w, k]
     ball.contact, ball.rides, ball.nx, ball.ny = ON_BALLS, -1, 0.0, 0.0
@@ -266,8 +266,13 @@ def _set_contact(state: State, w: int, k: int, surface: int, count: int) -> None
             ball.contact = contact.face
             ball.vx, ball.vy = _along(ball.vx, ball.vy, contact)
             ball.ax, ball.ay = _along(ball.ax, ball.ay, contact)
-        if _is_held_between(state, w, k, surface, count):
-            ball.vx, ball.vy, ball.ax, ball.ay, ball.contact = 0.0, 0.0, 0.0, 0.0, HELD
+        other = _other_bearer(state, w, k, surface, count)
+        if other >= 0:
+            two = state.contacts[w, other]
+            if contact.ux == contact.uy == two.ux == two.uy == 0.0:
+                ball.vx, ball.vy, ball.contact = 0.0, 0.0, HELD
+            if ball.contact == HELD or contact.curvature == two.curvature == 0.0:
+                ball.ax, ball.ay = 0.0, 0.0
     if not state.members[w, k].awake:
         ball.contact = HELD
 
@@ -280,18 +285,15 @@ def _along(x: float, y: float, contact: Record) -> tuple[float, float]:
 
 
 @function
-def _is_held_between(state: State, w: int, k: int, surface: int, count: int) -> bool:
-    """Return whether the surface that bears most of a member and another one bear it, and both stand."""
+def _other_bearer(state: State, w: int, k: int, surface: int, count: int) -> int:
+    """Return another surface that bears a member, at an angle to the one that bears most of it; -1 if none does."""
     one = state.contacts[w, surface]
     for p in range(count):
         contact = state.contacts[w, p]
-        if contact.one != k or contact.other >= 0 or contact.bears == 0.0:
-            continue
         turn = contact.nx * one.ny - contact.ny * one.nx
-        stand = one.ux == 0.0 and one.uy == 0.0 and contact.ux == 0.0 and contact.uy == 0.0
-        if stand and turn * turn > DEPENDENT:
-            return True
-    return False
+        if contact.one == k and contact.other < 0 and contact.bears > 0.0 and turn * turn > DEPENDENT:
+            return p
+    return -1
 
 
 @function

@@ -84,8 +84,7 @@ class Numbers(NamedTuple):
 
 
 @kernel
-def member_by_member(numbers):
-    n = numbers
+def member_by_member(n):
     sums = 0.0
     for i in range(n.table.shape[0]):
         for j in range(n.table.shape[1]):

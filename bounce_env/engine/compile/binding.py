@@ -33,7 +33,7 @@ class BoundType(nb_types.Type):
     """
 
     def __init__(self, of: Any) -> None:
-        self.of, self.fields, self.types, self.instance_class = of, of.fields, of.types, of.instance_class
+        self.fields, self.types, self.instance_class = of.fields, of.types, of.instance_class
         self.first_words = [sum(map(_words_of, of.types[:i])) for i in range(len(of.types))]
         # Functions are named after the types of their arguments, and all of a tuple's would make most of their code.
         digest = hashlib.sha256(of.name.encode()).hexdigest()[:16]

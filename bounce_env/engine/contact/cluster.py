@@ -230,9 +230,7 @@ def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> bool:
         if contact.least > 0.0 and _opening(state, w, contact) <= 0.0:
             contact.target = drive + contact.least
     slack = ULPS_OF_SPEED * fastest
-    possible = project(state, w, count, slack)
-    if not possible and _slip(state, w):
-        possible = project(state, w, count, slack)
+    possible = project(state, w, count, slack) or (_slip(state, w) and project(state, w, count, slack))
     if not possible and _squeeze(state, w, count):
         return False
     # Less than what lifts a ball by the tolerance only keeps closed what was.
@@ -244,12 +242,12 @@ def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> bool:
         if state.members[w, i].inside:
             ball, member = state.balls[w, i], state.members[w, i]
             ball.vx, ball.vy = member.x, member.y
-    _keep_closed(state, w, count, slack)
+    _absorb_rounding(state, w, count, slack)
     return True
 
 
 @function
-def _keep_closed(state: State, w: int, count: int, slack: float) -> None:
+def _absorb_rounding(state: State, w: int, count: int, slack: float) -> None:
     """Take from the velocities what closes on a surface by no more than `slack` [m/s].
 
     To a slow member the rounding of faster ones is a speed with which it would hit again.

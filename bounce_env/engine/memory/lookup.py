@@ -57,7 +57,7 @@ def is_doomed(state: State, w: int, k: int) -> bool:
 
 @function
 def let_off(state: State, w: int, k: int) -> None:
-    """Let no part be the one that has struck the ball, and is to crush it."""
+    """Forget the part that has struck a ball, and was to crush it."""
     state.balls[w, k].struck = -1
     _undoom(state, w, k)
 

@@ -13,9 +13,11 @@ if TYPE_CHECKING:
     from bounce_env.engine import EventKind, Status, World, WorldBatch
     from bounce_env.envs import PaddleEnv, PinballEnv, WallsEnv
     from bounce_env.scene import (
+        ALL_FEATURES,
         Arc,
         Ball,
         Bumper,
+        Feature,
         Field,
         Flipper,
         Paddle,
@@ -29,9 +31,11 @@ if TYPE_CHECKING:
     from bounce_env.trained import load_agent
 
 _SCENE = (
+    "ALL_FEATURES",
     "Arc",
     "Ball",
     "Bumper",
+    "Feature",
     "Field",
     "Flipper",
     "Paddle",
@@ -50,10 +54,12 @@ _HOME = {
 }
 
 __all__ = [
+    "ALL_FEATURES",
     "Arc",
     "Ball",
     "Bumper",
     "EventKind",
+    "Feature",
     "Field",
     "Flipper",
     "Paddle",

@@ -25,7 +25,8 @@ from bounce_env.engine.memory.records import (
 )
 from bounce_env.engine.memory.state import State, new_state
 from bounce_env.engine.motion.sincos import sin_cos as compiled_sin_cos
-from bounce_env.scene import Arc, Bumper, Field, Flipper, Part, Scene, Sensor, Wall, moves
+from bounce_env.scene import Arc, Bumper, Feature, Field, Flipper, Part, Scene, Sensor, Wall, moves
+from bounce_env.scene.features import checked_features
 
 sin_cos = from_python(compiled_sin_cos)
 Row = tuple[float, ...]
@@ -33,43 +34,62 @@ Point = tuple[float, float]
 
 
 def pack(
-    scenes: Sequence[Scene], worlds: int = 1, balls: int = 1, *, switches: bool = False, own_rows: bool = False
+    scenes: Sequence[Scene],
+    worlds: int = 1,
+    balls: int = 1,
+    *,
+    features: frozenset[Feature] = frozenset(),
+    own_rows: bool = False,
 ) -> State:
     """Return the state of a batch whose worlds play `scenes`; a feature that none of them has is left out.
 
-    switches: whether elements can be switched off. own_rows: each world has a row of every table for itself, all of
-    them of the one scene. Raises ValueError when some scenes have point balls and others discs: those are different
-    kernels.
+    features: forced on besides. own_rows: each world has a row of every table for itself, all of them of the one scene.
+    Raises ValueError when some scenes have point balls and others discs: those are different kernels.
     """
-    points = {scene.ball.radius == 0.0 for scene in scenes}
-    if len(points) > 1:
-        raise ValueError("scenes of one batch must all have a ball of radius 0, or all of radius > 0")
-    tables = _packed_tables(scenes)
-    if balls > 1 and points == {False} and tables["arcs"] is not None and tables["gravity"] is None:
-        # Balls that lie on each other inside of an arc are accelerated by that alone.
-        tables["gravity"] = np.zeros((len(scenes), 2))
+    present = features_of_worlds(scenes, balls) | features
+    tables = _packed_tables(scenes, present)
     if own_rows:
         tables = {name: None if t is None else np.repeat(t, worlds, axis=0) for name, t in tables.items()}
-    state = new_state(tables, worlds, balls, point=points == {True}, switches=switches)
+    state = new_state(tables, worlds, balls, present)
     if own_rows:
         state.worlds["scene"] = np.arange(worlds)
     return state
 
 
-def _packed_tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
-    """Return the tables of the scenes, by their names in `State`."""
-    faces = _padded_table(FACE, scenes, _pack_faces)
-    circles = _padded_table(CIRCLE, scenes, _pack_circles)
-    sensors = _padded_table(SENSOR, scenes, _pack_sensors)
-    arcs = _padded_table(ARC, scenes, _pack_arcs)
-    circle_sensors = _padded_table(CIRCLE_SENSOR, scenes, _pack_circle_sensors)
-    field_edges = _padded_table(FIELD_EDGE, scenes, _pack_field_edges)
-    parts = _padded_table(PART, scenes, _pack_parts)
-    rows = (_pack_faces, _pack_circles, _pack_arcs, _pack_sensors, _pack_circle_sensors, _pack_field_edges, _pack_parts)
+def features_of_worlds(scenes: Sequence[Scene], balls: int) -> frozenset[Feature]:
+    """Return the features of worlds with so many balls: those that any of the scenes has, and of several balls."""
+    if len({scene.ball.radius == 0.0 for scene in scenes}) > 1:
+        raise ValueError("scenes of one batch must all have a ball of radius 0, or all of radius > 0")
+    present = frozenset[Feature]().union(*(scene.features for scene in scenes))
+    if balls > 1 and Feature.BALL_RADIUS in present:
+        present |= {Feature.SEVERAL_BALLS}
+        if Feature.ARCS in present:
+            # Balls that lie on each other inside of an arc are accelerated by that alone.
+            present |= {Feature.GRAVITY}
+    return present
+
+
+def forced_features(scene: Scene, names: Iterable[str]) -> frozenset[Feature]:
+    """Return the features to force on worlds of a scene, by their names; points do not meet whatever is asked for."""
+    forced = checked_features(names)
+    return forced if scene.ball.radius > 0.0 else forced - {Feature.SEVERAL_BALLS}
+
+
+def _packed_tables(scenes: Sequence[Scene], present: frozenset[Feature]) -> dict[str, Array | None]:
+    """Return the tables of the scenes, by their names in `State`; None for a feature that is not present."""
+    row_makers = {
+        Feature.WALLS: ("faces", FACE, _pack_faces),
+        Feature.CIRCLES: ("circles", CIRCLE, _pack_circles),
+        Feature.ARCS: ("arcs", ARC, _pack_arcs),
+        Feature.LINE_SENSORS: ("sensors", SENSOR, _pack_sensors),
+        Feature.CIRCLE_SENSORS: ("circle_sensors", CIRCLE_SENSOR, _pack_circle_sensors),
+        Feature.FIELDS: ("field_edges", FIELD_EDGE, _pack_field_edges),
+        Feature.MOVING_PARTS: ("parts", PART, _pack_parts),
+    }
     heads = [
         (
             len(s.elements),
-            *(len(of(s)) for of in rows),
+            *(len(rows_of(s)) for _, _, rows_of in row_makers.values()),
             scene_extent(s),
             _max_speed(s),
             s.rest_speed,
@@ -78,23 +98,21 @@ def _packed_tables(scenes: Sequence[Scene]) -> dict[str, Array | None]:
         )
         for s in scenes
     ]
-    elements = _padded_table(ELEMENT, scenes, _pack_materials)
-    gravity = np.array([scene.gravity for scene in scenes], np.float64)
+    others: dict[Feature, tuple[str, Callable[[], Array]]] = {
+        Feature.GRAVITY: ("gravity", lambda: np.array([scene.gravity for scene in scenes], np.float64)),
+        Feature.ONE_WAY_WALLS: ("one_way", lambda: _pack_one_way(scenes)),
+        Feature.FLIPPERS: ("turns", lambda: _pack_turns(scenes)),
+        Feature.DRAGGED_WALLS: ("drag_limits", lambda: _pack_drag_limits(scenes)),
+        Feature.DRAG: ("drags", lambda: np.array([scene.drag for scene in scenes])),
+    }
     return {
         "scenes": np.array(heads, SCENE),
-        "elements": np.zeros((len(scenes), 0), ELEMENT) if elements is None else elements,
-        "gravity": gravity if gravity.any() or field_edges is not None else None,
-        "faces": faces,
-        "one_way": _pack_one_way(scenes),
-        "circles": circles,
-        "arcs": arcs,
-        "sensors": sensors,
-        "circle_sensors": circle_sensors,
-        "field_edges": field_edges,
-        "parts": parts,
-        "turns": _pack_turns(scenes),
-        "drag_limits": _pack_drag_limits(scenes),
-        "drags": np.array([s.drag for s in scenes]) if any(s.drag < 1.0 for s in scenes) else None,
+        "elements": _padded_table(ELEMENT, scenes, _pack_materials),
+        **{
+            name: _padded_table(dtype, scenes, rows_of) if feature in present else None
+            for feature, (name, dtype, rows_of) in row_makers.items()
+        },
+        **{name: table() if feature in present else None for feature, (name, table) in others.items()},
     }
 
 
@@ -119,12 +137,9 @@ def segment_direction(start: Point, end: Point) -> tuple[float, float, float]:
     return dx / length, dy / length, length * scale
 
 
-def _padded_table(dtype: np.dtype[Any], scenes: Sequence[Scene], rows_of: Callable[[Scene], list[Row]]) -> Array | None:
+def _padded_table(dtype: np.dtype[Any], scenes: Sequence[Scene], rows_of: Callable[[Scene], list[Row]]) -> Array:
     rows = [rows_of(scene) for scene in scenes]
-    widest = max(len(r) for r in rows)
-    if widest == 0:
-        return None
-    table = np.zeros((len(scenes), widest), dtype)
+    table = np.zeros((len(scenes), max(map(len, rows))), dtype)
     for s, scene_rows in enumerate(rows):
         for i, row in enumerate(scene_rows):
             table[s, i] = row
@@ -154,11 +169,9 @@ def _pack_faces(scene: Scene) -> list[Row]:
     return [(*w.start, *segment_direction(w.start, w.end), scene.ball.radius, i) for i, w in _standing_walls(scene)]
 
 
-def _pack_one_way(scenes: Sequence[Scene]) -> Array | None:
-    """Return which faces belong to one-way walls; None where there are none."""
+def _pack_one_way(scenes: Sequence[Scene]) -> Array:
+    """Return which faces belong to one-way walls."""
     flags = [[wall.one_way for _, wall in _standing_walls(scene)] for scene in scenes]
-    if not any(map(any, flags)):
-        return None
     one_way = np.zeros((len(scenes), max(map(len, flags))), np.int8)
     for s, row in enumerate(flags):
         one_way[s, : len(row)] = row
@@ -276,24 +289,20 @@ def _pack_part(e: Part, ball_radius: float) -> Row:
     return (*e.rail_start, ux, uy, *shape, span, 0.5 * span, e.max_speed, e.max_speed, 0.0)
 
 
-def _pack_turns(scenes: Sequence[Scene]) -> Array | None:
-    """Return which way each part turns: 1, -1, or 0 for one that slides; None where none turns."""
+def _pack_turns(scenes: Sequence[Scene]) -> Array:
+    """Return which way each part turns: 1, -1, or 0 for one that slides."""
     signs = [
         [(1 if e.active_angle > e.rest_angle else -1) if isinstance(e, Flipper) else 0 for _, e in scene.parts]
         for scene in scenes
     ]
-    if not any(map(any, signs)):
-        return None
     turns = np.zeros((len(scenes), max(map(len, signs))), np.int8)
     for s, row in enumerate(signs):
         turns[s, : len(row)] = row
     return turns
 
 
-def _pack_drag_limits(scenes: Sequence[Scene]) -> Array | None:
-    """Return what bounds the way of each dragged wall, by part; None where no scene has any."""
-    if not any(isinstance(e, Wall) for scene in scenes for _, e in scene.parts):
-        return None
+def _pack_drag_limits(scenes: Sequence[Scene]) -> Array:
+    """Return what bounds the way of each dragged wall, by part."""
     drag_limits = np.zeros((len(scenes), max(len(scene.parts) for scene in scenes)), DRAG_LIMITS)
     for s, scene in enumerate(scenes):
         side = scene_extent(scene)

@@ -13,7 +13,7 @@ from bounce_env.engine.memory.state import State, moving_arrays
 from bounce_env.scene import Scene
 from bounce_env.wording import shown
 
-VERSION = 6
+VERSION = 7
 _MAGIC = b"bounce_env world"
 _HEAD = struct.Struct("<16sI32s")
 _CHECKSUM = 32
@@ -21,7 +21,7 @@ _CHECKSUM = 32
 
 def snapshot_bytes(scene: Scene, state: State) -> bytes:
     """Return the state of a world of `scene`."""
-    head = _HEAD.pack(_MAGIC, VERSION, _snapshot_digest(scene))
+    head = _HEAD.pack(_MAGIC, VERSION, _snapshot_digest(scene, state))
     data = head + b"".join(array.tobytes() for array in moving_arrays(state))
     return data + hashlib.sha256(data).digest()
 
@@ -38,8 +38,9 @@ def restore_bytes(data: bytes, scene: Scene, state: State) -> None:
     _, version, digest = _HEAD.unpack_from(data)
     if version != VERSION:
         raise ValueError(f"snapshot of version {version}: must be of version {VERSION}")
-    if digest != _snapshot_digest(scene):
-        raise ValueError("snapshot of another scene: must be restored into a world of an equal one")
+    if digest != _snapshot_digest(scene, state):
+        whose = "an equal one with the same features"
+        raise ValueError(f"snapshot of another scene, or of other features: must be restored into a world of {whose}")
     if len(data) != size or hashlib.sha256(data[:-_CHECKSUM]).digest() != data[-_CHECKSUM:]:
         raise ValueError(f"snapshot of {len(data)} bytes: is truncated or changed, must be {size} bytes as written")
     offset = _HEAD.size
@@ -48,6 +49,7 @@ def restore_bytes(data: bytes, scene: Scene, state: State) -> None:
         offset += array.nbytes
 
 
-def _snapshot_digest(scene: Scene) -> bytes:
+def _snapshot_digest(scene: Scene, state: State) -> bytes:
     # The repr of a float has all its digits, and a scene is made of floats, names and flags.
-    return hashlib.sha256(repr(scene).encode()).digest()
+    there = [name for name, array in zip(State._fields, state, strict=True) if array is not None]
+    return hashlib.sha256(repr((scene, there)).encode()).digest()

@@ -1,22 +1,33 @@
 """World: the engine's Python face, one world at a time."""
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from bounce_env.engine.arguments import (
+    LARGEST,
+    MAX_BALLS,
+    MAX_EVENTS,
+    MOST_EVENTS,
+    checked_seconds,
+    commanded_part,
+    commanded_velocities,
+)
 from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.events.loop import LEDGER_FULL
-from bounce_env.engine.memory.records import LEDGER, OUT
+from bounce_env.engine.memory.records import LEDGER, OUT, Counts
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import part_offset_at
 from bounce_env.engine.motion.readout import view
-from bounce_env.engine.packing import pack, switch_round_ends
+from bounce_env.engine.packing import features_of_worlds, forced_features, pack, switch_round_ends
 from bounce_env.engine.placement import Core, part_cores_at_start, place_clear, separate_placed_balls
 from bounce_env.engine.snapshot import restore_bytes, snapshot_bytes
 from bounce_env.engine.world_kernels import (
     world_advance_to,
+    world_advance_until,
     world_begin_call,
     world_command_part,
     world_command_wall,
@@ -26,17 +37,11 @@ from bounce_env.engine.world_kernels import (
     world_resolve_all,
     world_resume_part,
 )
-from bounce_env.scene import Field, Flipper, Paddle, Scene, Sensor, Wall
-from bounce_env.wording import nearest, numbers, real, shown, whole
+from bounce_env.scene import Feature, Field, Scene, Sensor, Wall
+from bounce_env.wording import nearest, numbers, shown, whole
 
 Floats = npt.NDArray[np.float64]
 
-LARGEST = 1e15
-"""No number that a world is handed is larger [m, m/s, s]: products of a few stay far from overflow in float64."""
-
-MAX_EVENTS = 1_000_000
-MOST_EVENTS = 2**62
-MAX_BALLS = 64
 _LEDGER_ROWS = 1024
 _offset_at = from_python(part_offset_at)
 
@@ -44,19 +49,22 @@ _offset_at = from_python(part_offset_at)
 class World:
     """Balls in one scene, advanced exactly from event to event.
 
-    scene: what the world is made of. balls: how many balls, 1 or more, all alike.
+    scene: what the world is made of. balls: how many balls, 1 or more, all alike. features: names of features that its
+    kernels are to have besides those of the scene; the motion is the same to the bit. With `ALL_FEATURES` worlds of
+    discs all share one kernel, and so do those of points: nothing new is compiled for the next scene.
     Before the first `reset` there is no ball in play, and every other method raises RuntimeError.
 
     A ball rests and slides on walls, circles and arcs, and on parts that stand or slide; along parts that turn it goes
     in small bounces. Balls may lie on each other, and rest so; those of no radius do not meet.
     """
 
-    def __init__(self, scene: Scene, balls: int = 1) -> None:
+    def __init__(self, scene: Scene, balls: int = 1, *, features: Collection[str] = ()) -> None:
         if not isinstance(scene, Scene):
             raise TypeError(f"scene = {shown(scene)}: must be a Scene; load_scene reads one from a file")
         self.scene = scene
         self._balls = whole("balls", balls, 1, MAX_BALLS)
-        self._state = pack([scene], balls=self._balls, switches=True)
+        self._forced = forced_features(scene, features) | {Feature.SWITCHES}
+        self._state = pack([scene], balls=self._balls, features=self._forced)
         self._bound = bind(self._state)
         self._parts = scene.parts
         self._started = False
@@ -104,7 +112,7 @@ class World:
         the first reset.
         """
         self._check_started()
-        seconds = real("seconds", seconds, 0.0, LARGEST, f"finite and >= 0, at most {LARGEST:g}")
+        seconds = checked_seconds(seconds)
         max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
@@ -122,6 +130,20 @@ class World:
             pages.append(page[: world.rows].copy())
         return np.concatenate(pages)
 
+    def advance_until(self, bounces: int, seconds: float, *, max_events: int = MAX_EVENTS) -> int:
+        """Let time pass until the balls have bounced `bounces` times more; return how often they have.
+
+        At most `seconds` [s] pass, and at most `max_events` events (`status` is then BUDGET). All bounces at one
+        instant count, so that it may be some more. `time` is then that of the last of them, and velocities
+        are those after it. Raises as `advance` does, and ValueError where `bounces` is no whole number >= 1.
+        """
+        self._check_started()
+        bounces = whole("bounces", bounces, 1, MOST_EVENTS, ">= 1, a whole number")
+        max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
+        before = self.counts.bounces
+        world_advance_until(self._bound, before + bounces, checked_seconds(seconds), max_events)
+        return self.counts.bounces - before
+
     def command(self, name: str, value: float | bool | npt.ArrayLike) -> None:
         """Let the part `name` move otherwise from now until the next command.
 
@@ -133,22 +155,12 @@ class World:
         Raises ValueError for a name that no part has, and for a value that it cannot take.
         """
         self._check_started()
-        names = {part.name: m for m, (_, part) in enumerate(self._parts) if part.name}
-        if not isinstance(name, str) or name not in names:
-            hint = nearest(name, names)
-            raise ValueError(f"command: {shown(name)} must be one of the scene's parts: {sorted(names)}{hint}")
-        part = self._parts[names[name]][1]
-        if isinstance(part, Wall):
-            world_command_wall(self._bound, names[name], _checked_end_velocities(name, value, self.scene.max_speed))
-            return
-        if isinstance(part, Flipper):
-            if not isinstance(value, bool | np.bool_):
-                raise ValueError(f"command {name!r} = {shown(value)}: must be True (pressed) or False (released)")
-            velocity = part.up_speed if value else -part.down_speed
+        m = commanded_part(self.scene, name)
+        velocity = commanded_velocities(self._parts[m][1], value, self.scene.max_speed)
+        if velocity.ndim:
+            world_command_wall(self._bound, m, velocity)
         else:
-            fastest = part.max_speed if isinstance(part, Paddle) else part.speed
-            velocity = _checked_part_speed(name, value, fastest)
-        world_command_part(self._bound, names[name], velocity)
+            world_command_part(self._bound, m, float(velocity))
 
     def enable(self, name: str, on: bool) -> None:
         """Switch an element on or off: one that is off is not hit, and a ball that it supports falls. On after `reset`.
@@ -204,9 +216,9 @@ class World:
             raise TypeError(f"scene = {shown(scene)}: must be a Scene")
         if scene.ball.radius != self.scene.ball.radius:
             raise ValueError(f"ball.radius = {scene.ball.radius!r}: must be {self.scene.ball.radius!r} as before")
-        state = pack([scene], balls=self._balls, switches=True)
+        state = pack([scene], balls=self._balls, features=self._forced)
         old, new = self._state.worlds[0], state.worlds[0]
-        for name in ("time_hi", "time_lo", "bounces", "speed_capped", "drag_hi", "drag_lo"):
+        for name in ("time_hi", "time_lo", "bounces", "speed_capped", "events", "events_before", "drag_hi", "drag_lo"):
             new[name] = old[name]
         self._move_parts(scene, state)
         balls, cores = self._now()[0], np.empty((len(scene.parts), 4))
@@ -296,6 +308,17 @@ class World:
         self._check_started()
         return np.array([ball.status for ball in self._state.balls[0]], np.int64)
 
+    @property
+    def counts(self) -> Counts:
+        """How much has happened since reset."""
+        world = self._state.worlds[0]
+        return Counts(int(world.events_before + world.events), int(world.bounces), int(world.speed_capped))
+
+    @property
+    def features(self) -> frozenset[Feature]:
+        """The features that its kernels are compiled with: of the scene, of several balls, and those forced on."""
+        return features_of_worlds([self.scene], self._balls) | self._forced
+
     def _switch_ends(self) -> None:
         """An end that several elements share is, when the first of them is switched off, that of the next one."""
         assert self._state.disabled is not None
@@ -328,19 +351,3 @@ class World:
 def _cores_by_index(scene: Scene, cores: Floats) -> dict[int, Core]:
     rows = zip(scene.parts, cores.tolist(), strict=True)
     return {index: ((x0, y0), (x1, y1)) for (index, _), (x0, y0, x1, y1) in rows}
-
-
-def _checked_end_velocities(name: str, value: object, max_speed: float | None) -> Floats:
-    """Return the velocities of a draggable wall's two ends, (2, 2)."""
-    rows = numbers(value)
-    limit = LARGEST if max_speed is None else max_speed
-    if rows is None or rows.shape != (2, 2) or not (np.hypot(*rows.T) < limit).all():
-        whose = "" if max_speed is None else "the scene's max_speed, "
-        words = f"each slower than {whose}{limit!r} m/s"
-        raise ValueError(f"command {name!r} = {shown(value)}: must be ((vx, vy), (vx, vy)), finite, {words}")
-    return rows
-
-
-def _checked_part_speed(name: str, value: Any, fastest: float) -> float:
-    allowed = f"finite and at most {fastest!r} m/s either way"
-    return real(f"command {name!r}", value, -fastest, fastest, allowed)

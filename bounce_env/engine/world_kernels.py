@@ -40,6 +40,15 @@ def world_advance_to(state: State, hi: float, lo: float, max_events: int, ledger
 
 
 @kernel
+def world_advance_until(state: State, bounces: int, seconds: float, max_events: int) -> None:
+    """Advance until there have been `bounces` since reset, at most `seconds`."""
+    clear_hits(state, 0)
+    resume(state, 0)
+    hi, lo = later(state.worlds[0].time_hi, state.worlds[0].time_lo, seconds)
+    run(state, 0, hi, lo, max_events, None, bounces)
+
+
+@kernel
 def world_push_balls(state: State, dvx: float, dvy: float) -> None:
     for k in range(state.balls.shape[1]):
         disturb(state, 0, k, 1.0, dvx, dvy)

@@ -9,6 +9,7 @@ from bounce_env.scene.base import CONFIG, Box, Spec, union
 from bounce_env.scene.checks import check_scene
 from bounce_env.scene.elements import Ball, Element, Part, moves
 from bounce_env.scene.errors import own_words_of_scenes
+from bounce_env.scene.features import Feature, features_of
 from bounce_env.scene.fields import (
     Allowed,
     PositiveOrNone,
@@ -63,6 +64,11 @@ class Scene(Spec):
     def parts(self) -> tuple[tuple[int, Part], ...]:
         """The elements that move, each with its index in `elements`, in their order."""
         return tuple((i, e) for i, e in enumerate(self.elements) if isinstance(e, Part) and moves(e))
+
+    @property
+    def features(self) -> frozenset[Feature]:
+        """The features that a world of this scene is compiled with; all others are left out of its kernels."""
+        return features_of(self.gravity, self.ball.radius, self.drag, self.elements)
 
     @property
     def bounds(self) -> Box:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env import Ball, Bumper, Scene, Wall
+from bounce_env import Ball, Bumper, Scene, Wall, WorldBatch
 from bounce_env.engine.placement import place_clear
 
 Floats = npt.NDArray[np.float64]
@@ -65,3 +65,8 @@ def closed_scene(rng: np.random.Generator, radius: float, gravity: tuple[float, 
         Bumper(rng.uniform(-0.4, 0.4, 2).tolist(), float(rng.uniform(0.02, 0.1))) for _ in range(rng.integers(0, 6))
     ]
     return Closed(Scene(gravity=gravity, ball=Ball(radius=radius), elements=(*walls, *bumpers)), corners)
+
+
+def rows_of(worlds: WorldBatch) -> Floats:
+    """x, y, vx, vy of every world's ball."""
+    return np.concatenate((worlds.position[:, 0], worlds.velocity[:, 0]), axis=1)

@@ -9,7 +9,7 @@ from bounce_env import Arc, Ball, Scene
 from bounce_env.engine.memory.records import OK
 from bounce_env.engine.world_batch import WorldBatch
 from tests.conftest import soak_count
-from tests.engine.closed_scenes import closed_scene
+from tests.engine.closed_scenes import closed_scene, rows_of
 
 pytestmark = pytest.mark.slow
 
@@ -29,17 +29,18 @@ def test_balls_stay_inside_and_keep_their_energy(radius: float, gravity: tuple[f
             closed = closed_scene(rng, radius, gravity)
             starts = closed.starts(rng, BALLS_PER_SCENE)
         worlds = WorldBatch([closed.scene], np.zeros(BALLS_PER_SCENE, int))
-        worlds.reset(*starts)
-        before = energy(worlds.balls, gravity)
+        worlds.reset(position=starts[0], velocity=starts[1])
+        before = energy(rows_of(worlds), gravity)
         assert worlds.advance(SECONDS) == 0, closed.scene
-        now = worlds.balls
+        now = rows_of(worlds)
         assert np.isfinite(now).all(), closed.scene
         assert (worlds.status == OK).all(), closed.scene
         assert all(closed.holds(x, y) for x, y in now[:, :2].tolist()), closed.scene
         # Each bounce rounds the energy by a few units in the last place of its largest part.
         scale = np.abs(before) + np.hypot(*gravity) * 1.5 + np.square(now[:, 2:]).sum(1)
-        assert (np.abs(energy(now, gravity) - before) <= 4e-15 * scale * (worlds.bounces + 10)).all(), closed.scene
-        balls, bounces = balls + BALLS_PER_SCENE, bounces + int(worlds.bounces.sum())
+        hits = worlds.counts.bounces
+        assert (np.abs(energy(now, gravity) - before) <= 4e-15 * scale * (hits + 10)).all(), closed.scene
+        balls, bounces = balls + BALLS_PER_SCENE, bounces + int(hits.sum())
     print(f"radius {radius}, gravity {gravity}: {balls} balls, {bounces} bounces, none escaped")  # noqa: T201
     assert bounces > balls
 
@@ -50,13 +51,13 @@ def test_elastic_bounces_inside_a_circle_add_up_to_no_gain_and_no_loss(gravity: 
     rng = np.random.default_rng(1)
     scene = Scene(gravity=(0.0, -gravity), ball=Ball(radius=0.05), elements=(Arc((0, 0), 1.0, 0, 2 * math.pi, b=1.0),))
     worlds = WorldBatch([scene], np.zeros(32, int))
-    worlds.reset(rng.uniform(-0.5, 0.5, (32, 2)), rng.uniform(-3.0, 3.0, (32, 2)))
-    before, drift = energy(worlds.balls, (0.0, -gravity)), []
+    worlds.reset(position=rng.uniform(-0.5, 0.5, (32, 2)), velocity=rng.uniform(-3.0, 3.0, (32, 2)))
+    before, drift = energy(rows_of(worlds), (0.0, -gravity)), []
     scale = np.abs(before) + 2.0 * gravity
     for _ in range(300):
         worlds.advance(10.0)
-        drift.append((energy(worlds.balls, (0.0, -gravity)) - before) / scale)
-    assert np.median(worlds.bounces) > 2_000
+        drift.append((energy(rows_of(worlds), (0.0, -gravity)) - before) / scale)
+    assert np.median(worlds.counts.bounces) > 2_000
     assert np.median(np.abs(drift[-1])) < 2e-14
     assert np.abs(drift).max() < 2e-13
 

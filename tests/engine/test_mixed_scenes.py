@@ -11,6 +11,7 @@ from bounce_env.engine.memory.records import BUDGET, OK
 from bounce_env.engine.placement import element_gaps
 from bounce_env.engine.world_batch import WorldBatch
 from tests.conftest import soak_count
+from tests.engine.closed_scenes import rows_of
 from tests.engine.mixed_scenes import mixed_scene, start_in
 
 pytestmark = pytest.mark.slow
@@ -48,19 +49,19 @@ def test_mixed_scenes(point: bool) -> None:
                 places.append(start[0])
                 speeds.append(start[1])
         worlds = WorldBatch(scenes, np.arange(SCENES))
-        worlds.reset(places, speeds)
-        worlds.advance(SECONDS, EVENTS)
-        balls, status = worlds.balls, worlds.status
+        worlds.reset(position=places, velocity=speeds)
+        worlds.advance(SECONDS, max_events=EVENTS)
+        balls, status = rows_of(worlds), worlds.status[:, 0]
         assert np.isfinite(balls).all()
         assert (np.abs(balls[:, :2] - 0.5) <= 0.5 + 1e-9).all()
         for scene, ball in zip(scenes, balls.tolist(), strict=True):
             assert min(gap for _, gap in element_gaps(scene, {}, ball[0], ball[1])) >= -1e-9, (scene, ball)
         assert set(status) <= {OK, BUDGET}
-        before = worlds.state.worlds["time_hi"].copy()
-        worlds.advance(SECONDS, 1000)
+        before = worlds.time
+        worlds.advance(SECONDS, max_events=1000)
         # A ball that meets more than its budget allows meets it in due time: a thousand events take more than no time,
         # but where it is driven to and fro over the edge of a field, ever shorter: of that the engine sees no end.
-        stuck = np.flatnonzero(worlds.state.worlds["time_hi"] - before <= 1e-7).tolist()
+        stuck = np.flatnonzero(worlds.time - before <= 1e-7).tolist()
         for i in stuck:
             assert is_at_an_edge(scenes[i], *balls[i, :2].tolist()), (scenes[i], places[i], speeds[i])
         met = {"ok": int((status == OK).sum()), "budget": int((status == BUDGET).sum()), "edge of a field": len(stuck)}

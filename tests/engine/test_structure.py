@@ -20,6 +20,7 @@ ENGINE = PACKAGE / "engine"
 ROOMS = {"compile", "memory", "motion", "impact", "detect", "contact", "events"}
 FACE = {
     "__init__",
+    "arguments",
     "world",
     "world_batch",
     "world_kernels",

@@ -9,19 +9,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, TypeAlias
-from unittest import mock
 
 import numpy as np
 
-from bounce_env.engine import world as engine
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, OK, OUT
-from bounce_env.engine.memory.state import State
 from bounce_env.engine.world import World
-from bounce_env.scene import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall
+from bounce_env.scene import ALL_FEATURES, Feature, Scene
 
 Point: TypeAlias = tuple[float, float]
 Step: TypeAlias = float | tuple[Any, ...]
@@ -152,43 +149,16 @@ def between(what: str, seen: Callable[[Run], float], low: float, high: float) ->
 
 # ---- playing
 
-_ALL = (
-    Wall((0, 0), (1, 0), b=0.5, f=0.5, kick=1, kick_threshold=1, cooldown=1, name="wall"),
-    Wall((0, 1), (1, 1), one_way=True, name="gate"),
-    Bumper((2, 0), 0.25, name="bumper"),
-    Arc((3, 0), 0.5, 0, 1, name="arc"),
-    Sensor((4, 0), (5, 0), name="line"),
-    Sensor(center=(5, 0), radius=0.5, name="circle"),
-    Field(((6, 0), (7, 0), (7, 1)), (1, 0), name="field"),
-    Paddle((0, 2), (1, 2), half_width=0.25, radius=0.25, max_speed=1, name="paddle"),
-    Flipper((2, 2), 1, radius=0.25, rest_angle=0, active_angle=1, up_speed=1, down_speed=1, name="flipper"),
-    Wall((0, 3), (1, 3), draggable=True, name="dragged"),
-)
-
-
-def everything(point: bool) -> Scene:
-    """A scene with one of everything, which no ball is put into: packed beside another, it brings its features."""
-    ball = Ball(radius=0.0 if point else 0.25)
-    return Scene(ball=ball, rest_speed=0.25, drag=0.5, max_speed=100, elements=_ALL)
+ALL_BUT_SEVERAL_BALLS = ALL_FEATURES - {Feature.SEVERAL_BALLS}
 
 
 def new_world(scene: Scene, *, balls: int = 1, lean: bool = False) -> World:
-    """A world of the scene, in the kernel that has every feature, or in the scene's own.
+    """A world of the scene, in the kernel that has every feature of one ball, or in the scene's own.
 
     There is one kernel for each set of features, and it takes long to compile. With the one that has them all, the
     whole suite needs one for discs and one for points; a soak runs it in the lean ones, too.
     """
-    return World(scene, balls) if lean else _general(lambda: World(scene, balls))
-
-
-def _general(act: Callable[[], Any]) -> Any:
-    pack = engine.pack
-
-    def with_everything(scenes: Sequence[Scene], **how: Any) -> State:
-        return pack([*scenes, everything(scenes[0].ball.radius == 0)], **how)
-
-    with mock.patch.object(engine, "pack", with_everything):
-        return act()
+    return World(scene, balls, features=() if lean else ALL_BUT_SEVERAL_BALLS)
 
 
 def play(case: Case, *, pieces: int = 1, restored: bool = False, lean: bool = False, watch: Watch | None = None) -> Run:
@@ -205,7 +175,7 @@ def play(case: Case, *, pieces: int = 1, restored: bool = False, lean: bool = Fa
         world.reset(position=case.position, velocity=case.velocity)
         for step in case.script:
             if isinstance(step, tuple):
-                _command(world, step, lean)
+                _command(world, step)
                 if step[0] == "replace":
                     off = set()
                 elif step[0] == "enable":
@@ -243,13 +213,9 @@ def _names(scene: Scene) -> list[str]:
     return [element.name or str(index) for index, element in enumerate(scene.elements)]
 
 
-def _command(world: World, step: tuple[Any, ...], lean: bool) -> None:
+def _command(world: World, step: tuple[Any, ...]) -> None:
     name, *arguments = step
-    act = getattr(world, name)
-    if lean:
-        act(*arguments)
-    else:
-        _general(lambda: act(*arguments))
+    getattr(world, name)(*arguments)
 
 
 def _restored(world: World, lean: bool) -> World:

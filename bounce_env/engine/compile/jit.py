@@ -24,7 +24,7 @@ from bounce_env.engine.compile.pipeline import InnerCompiler, KernelCompiler
 
 Record = Any  # one record of a table or of the state, see `engine.memory.records`; compiled code changes it in place
 Table = Any  # an array, or None where no scene of the batch has what it holds
-Feature = Any  # a number, or None where no scene of the batch has the feature
+NumberOrNone = Any  # None where no scene of the batch has what it is needed for
 F = TypeVar("F", bound=Callable[..., Any])
 POLICY: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 

@@ -6,7 +6,7 @@ these before parts, and each in its order.
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.compile.jit import NumberOrNone, Record, Table, function, where
 from bounce_env.engine.contact.arrival import end_flight, snap_to_hit
 from bounce_env.engine.contact.collisions import collide
 from bounce_env.engine.contact.resolve import resolve
@@ -25,7 +25,7 @@ from bounce_env.engine.motion.parts import part_offset_at, part_stop_instant
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED, UNSURE
 
 # How a run of the loop ends.
-DONE, BUDGET_SPENT, LEDGER_FULL = 0, 1, 2
+DONE, BUDGET_SPENT, LEDGER_FULL, BOUNCED = 0, 1, 2, 3
 
 # What comes next.
 NOTHING, OF_BALL, OF_PAIR, OF_PART = -1, 0, 1, 2
@@ -36,14 +36,18 @@ ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_EVENT + 7
 
 
 @function
-def run(state: State, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table) -> int:
-    """Process the events of world `w` up to and including an instant; DONE, BUDGET_SPENT or LEDGER_FULL.
+def run(
+    state: State, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table, bounces: NumberOrNone = None
+) -> int:
+    """Process the events of world `w` up to and including an instant; DONE, BUDGET_SPENT, LEDGER_FULL or BOUNCED.
 
-    At most `max_events` of them since `resume`.
+    At most `max_events` of them since `resume`, and no more where there have been `bounces` since reset.
     Unless DONE, the world's time is that of its last event, and the next call goes on from there.
     """
     world = state.worlds[w]
     while True:
+        if bounces is not None and world.bounces >= bounces:
+            return BOUNCED
         hi, lo, what, i, j = _next_event(state, w, until_hi, until_lo)
         if what == NOTHING:
             world.time_hi, world.time_lo = until_hi, until_lo
@@ -187,6 +191,7 @@ def restart(state: State, w: int) -> None:
     world = state.worlds[w]
     world.time_hi, world.time_lo = 0.0, 0.0
     world.bounces, world.speed_capped, world.rows = 0, 0, 0
+    world.events, world.events_before = 0, 0
     world.drag_hi, world.drag_lo = -1.0, 0.0
     let_all_go(state, w)
     clear_hits(state, w)
@@ -219,6 +224,7 @@ def clear_hits(state: State, w: int) -> None:
 @function
 def resume(state: State, w: int) -> None:
     """Let balls that the event budget stopped go on, with a new budget."""
+    state.worlds[w].events_before += state.worlds[w].events
     state.worlds[w].events = 0
     for k in range(state.balls.shape[1]):
         if state.balls[w, k].status == BUDGET:

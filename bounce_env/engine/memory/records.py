@@ -1,7 +1,7 @@
 """The records that scenes and worlds are made of, and the numbers that stand for kinds. Every field has 8 bytes."""
 
 from enum import IntEnum
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -56,7 +56,7 @@ WORLD = record(
     time_hi="f8", time_lo="f8",
     scene="u8",
     bounces="i8", speed_capped="i8",  # counts since reset
-    events="i8",  # of the present call or step
+    events="i8", events_before="i8",  # of the present call or step, and of those before it since reset
     drag_hi="f8", drag_lo="f8",  # when drag acted last
     dirty="i8",  # whether `hits` has entries of the last step
     rows="i8",  # of the ledger in use
@@ -183,6 +183,16 @@ class Status(IntEnum):
     BUDGET = 1  # in play, but the call ran out of events: the next one goes on from the last event
     CRUSHED = 2  # caught between closing parts, which stand until a command opens the gap
     OUT = 3  # out of play: it has crossed a drain
+
+
+class Counts(NamedTuple):
+    """How much has happened since `reset`; of a batch each member has shape (worlds,)."""
+
+    events: Any
+    """All that is planned for: bounces, ends of contacts, sensors crossed, stops of parts."""
+    bounces: Any
+    speed_capped: Any
+    """Bounces that `max_speed` has slowed down."""
 
 
 class EventKind(IntEnum):

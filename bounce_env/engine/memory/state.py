@@ -28,6 +28,7 @@ from bounce_env.engine.memory.records import (
     ZONE,
     Array,
 )
+from bounce_env.scene import Feature
 
 
 class State(NamedTuple):
@@ -88,18 +89,11 @@ def copy_of_world(state: State, w: int) -> State:
     return state._replace(**rows)
 
 
-def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, switches: bool) -> State:
-    """Return zeroed worlds of `balls` balls each beside the scenes' `tables`, by their names in `State`.
-
-    point: whether the balls have no radius. switches: whether elements can be disabled.
-    """
+def new_state(tables: dict[str, Any], worlds: int, balls: int, present: frozenset[Feature]) -> State:
+    """Return zeroed worlds of `balls` balls each, with the features `present`, beside the scenes' `tables` by name."""
     parts, drag_limits, elements = tables["parts"], tables["drag_limits"], tables["elements"]
-    # Without gravity only the inside of an arc holds a ball.
-    round_ends = parts is not None and bool((parts["offset_radius"] > 0.0).any())
-    curves = tables["arcs"] is not None or (
-        tables["gravity"] is not None and (tables["circles"] is not None or round_ends)
-    )
-    meet = not point and balls > 1
+    meet, curved = Feature.SEVERAL_BALLS in present, Feature.CURVED_CONTACT in present
+    point = Feature.BALL_RADIUS not in present
 
     def sides(table: Table) -> Array | None:
         return None if table is None else np.zeros((worlds, balls, table.shape[1]), np.int8)
@@ -117,15 +111,15 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, *, point: bool, s
         sensor_sides=sides(tables["sensors"]),
         circle_sensor_sides=sides(tables["circle_sensors"]),
         field_edge_sides=sides(tables["field_edges"]),
-        curve_slides=np.zeros((worlds, balls), CURVE_SLIDE) if curves else None,
-        carried=np.zeros((worlds, balls), CARRIED) if curves and parts is not None else None,
+        curve_slides=np.zeros((worlds, balls), CURVE_SLIDE) if curved else None,
+        carried=np.zeros((worlds, balls), CARRIED) if curved and parts is not None else None,
         pairs=np.zeros((worlds, balls, balls), PAIR) if meet else None,
         touches=np.zeros((worlds, TOUCHES), TOUCH),
         members=np.zeros((worlds, balls), MEMBER) if meet else None,
         contacts=np.zeros((worlds, TOUCHES + CONTACTS_OF_BALL * balls), CONTACT) if meet else None,
         actives=np.zeros((worlds, 2 * balls), ACTIVE) if meet else None,
         factors=np.zeros((worlds, 2 * balls, 2 * balls)) if meet else None,
-        disabled=np.zeros((worlds, elements.shape[1]), np.int8) if switches else None,
-        cooling=np.zeros((worlds, elements.shape[1]), COOLING) if elements["cooldown"].any() else None,
+        disabled=np.zeros((worlds, elements.shape[1]), np.int8) if Feature.SWITCHES in present else None,
+        cooling=np.zeros((worlds, elements.shape[1]), COOLING) if Feature.COOLDOWN in present else None,
         hits=np.zeros((worlds, elements.shape[1]), np.int64),
     )

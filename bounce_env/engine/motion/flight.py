@@ -7,7 +7,7 @@ time takes the same formula as one that is not there, so that the general kernel
 import math
 from typing import NamedTuple
 
-from bounce_env.engine.compile.jit import Feature, Record, function, where
+from bounce_env.engine.compile.jit import NumberOrNone, Record, function, where
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.tolerances import ULPS_OF_LENGTH
 
@@ -19,8 +19,8 @@ class Flight(NamedTuple):
     y: float
     vx: float
     vy: float
-    ax: Feature
-    ay: Feature
+    ax: NumberOrNone
+    ay: NumberOrNone
 
 
 def _coasting_flight(state: State, ball: Record) -> Flight:
@@ -34,7 +34,7 @@ def flight_of(state: State, ball: Record) -> Flight:
 
 
 @function
-def coordinate_after(x: float, v: float, a: Feature, t: float) -> float:
+def coordinate_after(x: float, v: float, a: NumberOrNone, t: float) -> float:
     """Return one coordinate [m] after `t` seconds."""
     if a is None:
         return x + v * t
@@ -44,7 +44,7 @@ def coordinate_after(x: float, v: float, a: Feature, t: float) -> float:
 
 
 @function
-def speed_after(v: float, a: Feature, t: float) -> float:
+def speed_after(v: float, a: NumberOrNone, t: float) -> float:
     """Return one component of the velocity [m/s] after `t` seconds."""
     if a is None:
         return v
@@ -90,13 +90,13 @@ def _no_flight_acceleration_along(flight: Flight, nx: float, ny: float) -> None:
 
 
 @where("ax", otherwise=_no_flight_acceleration_along)
-def flight_acceleration_along(flight: Flight, nx: float, ny: float) -> Feature:
+def flight_acceleration_along(flight: Flight, nx: float, ny: float) -> NumberOrNone:
     """Return the component of the acceleration [m/s^2] along a unit vector; None where there is no acceleration."""
     return flight.ax * nx + flight.ay * ny
 
 
 @function
-def acceleration_magnitude(ax: Feature, ay: Feature) -> float:
+def acceleration_magnitude(ax: NumberOrNone, ay: NumberOrNone) -> float:
     """Return the length of an acceleration [m/s^2]; 0 where there is none."""
     if ax is None:
         return 0.0
@@ -104,7 +104,7 @@ def acceleration_magnitude(ax: Feature, ay: Feature) -> float:
 
 
 @function
-def swept_interval(x: float, v: float, a: Feature, t: float) -> tuple[float, float]:
+def swept_interval(x: float, v: float, a: NumberOrNone, t: float) -> tuple[float, float]:
     """Return the smallest and the largest value [m] that one coordinate takes on during the next `t` seconds."""
     end = coordinate_after(x, v, a, t)
     low, high = min(x, end), max(x, end)

@@ -44,10 +44,19 @@ def stroke_now(state: State, w: int, m: int) -> float:
     return offset_now(state, w, m) / state.parts[state.worlds[w].scene, m].span
 
 
-@kernel
-def view(state: State, w: int, balls: Array, cores: Array) -> None:
-    """Write the balls (k, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of world `w`."""
+@function
+def view_world(state: State, w: int, balls: Array, cores: Array) -> None:
+    """Write the balls (k, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of world `w`.
+
+    Of a scene that has fewer parts than `cores` has rows, only those.
+    """
     for k in range(balls.shape[0]):
         balls[k, 0], balls[k, 1], balls[k, 2], balls[k, 3] = ball_now(state, w, k)
-    for m in range(cores.shape[0]):
+    for m in range(min(cores.shape[0], state.scenes[state.worlds[w].scene].parts)):
         cores[m, 0], cores[m, 1], cores[m, 2], cores[m, 3] = core_now(state, w, m)
+
+
+@kernel
+def view(state: State, w: int, balls: Array, cores: Array) -> None:
+    """As `view_world`, from Python."""
+    view_world(state, w, balls, cores)

@@ -2,11 +2,11 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Feature, function
+from bounce_env.engine.compile.jit import NumberOrNone, function
 
 
 @function
-def falling_root(gap: float, behind: bool, rate: float, pull: Feature) -> float:
+def falling_root(gap: float, behind: bool, rate: float, pull: NumberOrNone) -> float:
     """Return the first t >= 0 at which gap + rate t + pull t^2 / 2 falls through zero, which it does at most once.
 
     `behind` says that the ball is on the far side already, where the gap must rise above zero before it can fall.

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.scene import Flipper, Paddle, Part, Scene, Wall
-from bounce_env.wording import nearest, numbers, real, shown
+from bounce_env.wording import nearest, numbers, shown
 
 Floats = npt.NDArray[np.float64]
 
@@ -17,10 +17,8 @@ MAX_BALLS = 64
 MAX_EVENTS = 1_000_000
 MOST_EVENTS = 2**62
 
-
-def checked_seconds(seconds: float) -> float:
-    """Return a duration that a world can be advanced by [s]."""
-    return real("seconds", seconds, 0.0, LARGEST, f"finite and >= 0, at most {LARGEST:g}")
+SECONDS = f"finite and >= 0, at most {LARGEST:g}"
+"""What a duration must be, in words."""
 
 
 def commanded_part(scene: Scene, name: object) -> int:

@@ -11,7 +11,7 @@ from bounce_env.engine.arguments import (
     MAX_BALLS,
     MAX_EVENTS,
     MOST_EVENTS,
-    checked_seconds,
+    SECONDS,
     commanded_part,
     commanded_velocities,
 )
@@ -38,7 +38,7 @@ from bounce_env.engine.world_kernels import (
     world_resume_part,
 )
 from bounce_env.scene import Feature, Field, Scene, Sensor, Wall
-from bounce_env.wording import nearest, numbers, shown, whole
+from bounce_env.wording import nearest, numbers, real, shown, whole
 
 Floats = npt.NDArray[np.float64]
 
@@ -112,7 +112,7 @@ class World:
         the first reset.
         """
         self._check_started()
-        seconds = checked_seconds(seconds)
+        seconds = real("seconds", seconds, 0.0, LARGEST, SECONDS)
         max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
@@ -141,7 +141,7 @@ class World:
         bounces = whole("bounces", bounces, 1, MOST_EVENTS, ">= 1, a whole number")
         max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
         before = self.counts.bounces
-        world_advance_until(self._bound, before + bounces, checked_seconds(seconds), max_events)
+        world_advance_until(self._bound, before + bounces, real("seconds", seconds, 0.0, LARGEST, SECONDS), max_events)
         return self.counts.bounces - before
 
     def command(self, name: str, value: float | bool | npt.ArrayLike) -> None:

@@ -11,7 +11,7 @@ from bounce_env.engine.arguments import (
     MAX_BALLS,
     MAX_EVENTS,
     MOST_EVENTS,
-    checked_seconds,
+    SECONDS,
     commanded_part,
     commanded_velocities,
 )
@@ -27,7 +27,7 @@ from bounce_env.engine.motion.readout import view_world
 from bounce_env.engine.packing import features_of_worlds, forced_features, pack
 from bounce_env.engine.placement import part_cores_at_start, place_clear, separate_placed_balls
 from bounce_env.scene import Feature, Scene
-from bounce_env.wording import numbers, shown, whole
+from bounce_env.wording import numbers, real, shown, whole
 
 Floats = npt.NDArray[np.float64]
 
@@ -143,7 +143,7 @@ class WorldBatch:
         """Let `seconds` pass in every world; return how many ran out of `max_events` (status BUDGET) before."""
         self._check_started()
         max_events = whole("max_events", max_events, 1, MOST_EVENTS)
-        return int(batch_advance(self._bound, checked_seconds(seconds), max_events))
+        return int(batch_advance(self._bound, real("seconds", seconds, 0.0, LARGEST, SECONDS), max_events))
 
     def advance_until(self, bounces: int, seconds: float, *, max_events: int = MAX_EVENTS) -> Array:
         """Let every world's balls bounce `bounces` times more, at most `seconds` and `max_events` events.
@@ -154,7 +154,7 @@ class WorldBatch:
         bounces = whole("bounces", bounces, 1, MOST_EVENTS)
         max_events = whole("max_events", max_events, 1, MOST_EVENTS)
         before = self._state.worlds["bounces"].copy()
-        batch_advance_until(self._bound, bounces, checked_seconds(seconds), max_events)
+        batch_advance_until(self._bound, bounces, real("seconds", seconds, 0.0, LARGEST, SECONDS), max_events)
         return np.asarray(self._state.worlds["bounces"] - before)
 
     def command(self, name: str, value: Any) -> None:

@@ -13,9 +13,9 @@ import pytest
 from mpmath import mpf
 
 from bounce_env.engine.world import World
+from bounce_env.report.reference.flights import BOUNCE, PART_STOPS, SENSOR, Oracle
 from bounce_env.scene import Ball, Scene
 from tests.conftest import soak_count
-from tests.reference.oracle import BOUNCE, PART_STOPS, SENSOR, Oracle
 from tests.reference.random_scenes import box, direction, free_point, table
 
 pytestmark = pytest.mark.slow

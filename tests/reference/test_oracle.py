@@ -6,10 +6,10 @@ import mpmath
 import pytest
 from mpmath import mpf
 
+from bounce_env.report.reference.flights import BOUNCE, PART_STOPS, SENSOR, Oracle
+from bounce_env.report.reference.polynomials import evaluate, roots
 from bounce_env.scene import Ball, Bumper, Paddle, Scene, Sensor, Wall
 from tests.conftest import soak_count
-from tests.reference.oracle import BOUNCE, PART_STOPS, SENSOR, Oracle
-from tests.reference.polynomials import evaluate, roots
 from tests.reference.random_scenes import box, clearance, table
 
 

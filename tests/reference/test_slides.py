@@ -7,7 +7,7 @@ import mpmath as mp
 import pytest
 
 from bounce_env import Arc, Ball, Bumper, EventKind, Field, Flipper, Scene, Sensor, Wall, World
-from tests.reference.pendulum import DIGITS, pendulum_place, release_cosine
+from bounce_env.report.reference.pendulum import DIGITS, pendulum_place, release_cosine
 
 G = 9.81
 BEGINS, ENDS = int(EventKind.CONTACT_BEGINS), int(EventKind.CONTACT_ENDS)

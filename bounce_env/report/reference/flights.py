@@ -5,7 +5,8 @@ in time of degree four or less; its real roots are isolated between those of its
 After a bounce the root at zero is divided out, so the same surface can be searched at once. No tolerance
 takes part, except that hits closer in time than `same_instant` count as simultaneous.
 
-For scenes of walls (one-way, too), bumpers, arcs, at most one paddle, and sensors; one ball; no resting contact.
+For scenes of walls (one-way, too), bumpers, arcs, at most one paddle, flippers at rest, and sensors; one ball; no
+resting contact: `Run.soft` tells when that would begin.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ from typing import Any, NamedTuple
 
 import mpmath
 
-from bounce_env.scene import Arc, Bumper, Paddle, Scene, Sensor, Wall
-from tests.reference.polynomials import Num, Poly, add, derivative, evaluate, multiply, roots
+from bounce_env.report.reference.polynomials import Num, Poly, add, derivative, evaluate, multiply, roots
+from bounce_env.scene import Arc, Bumper, Flipper, Paddle, Scene, Sensor, Wall
 
 BOUNCE, SENSOR, PART_STOPS = 0, 3, 4
 
@@ -43,6 +44,7 @@ class Run(NamedTuple):
     position: Pair
     velocity: Pair
     out: bool
+    soft: Num | None  # when first something was struck more slowly than the scene's rest_speed
 
 
 class Surface(NamedTuple):
@@ -75,13 +77,16 @@ class Oracle:
     def __post_init__(self) -> None:
         scene = self.scene
         for element in scene.elements:
-            if not isinstance(element, Wall | Bumper | Arc | Paddle | Sensor):
+            if not isinstance(element, Wall | Bumper | Arc | Paddle | Flipper | Sensor):
                 raise ValueError(f"the oracle knows no {type(element).__name__}")
         paddles = [k for k, e in enumerate(scene.elements) if isinstance(e, Paddle)]
         if len(paddles) > 1:
             raise ValueError("the oracle knows one paddle at most")
         self.paddle = paddles[0] if paddles else None
         self.gravity = self.pair(scene.gravity)
+        self.elements: tuple[Any, ...] = scene.elements
+        self.kicked: dict[int, Num] = {}
+        self.soft: Num | None = None
 
     def pair(self, p: Sequence[float]) -> Pair:
         return self.number(p[0]), self.number(p[1])
@@ -105,6 +110,8 @@ class Oracle:
         self.p, self.v = self.pair(position), self.pair(velocity)
         self.events: list[Event] = []
         self.out = False
+        self.soft = None
+        self.kicked = {}
         self.last_crossing: dict[int, Num] = {}
         self.start_paddle()
         on = [s for s in self.surfaces() if s.key[0] in set(touching) and abs(self.gap(s)[0]) < 1e-9]
@@ -122,20 +129,21 @@ class Oracle:
                 break
             until = min(t for t in (end, stop, waiting[0][0] if waiting else None) if t is not None)
             self.fly(until - self.now)
-            if stop is not None and self.now == stop:
+            if stop is not None and self.now == stop and self.paddle is not None:
                 self.paddle_at = self.rail_length if self.paddle_speed > 0 else self.number(0)
                 self.paddle_speed = self.number(0)
                 self.record(self.paddle, PART_STOPS)
-        return Run(self.events, self.now, self.p, self.v, self.out)
+        return Run(self.events, self.now, self.p, self.v, self.out, self.soft)
 
     # ---- paddle
 
     def start_paddle(self) -> None:
         self.paddle_speed = self.number(0)
         self.paddle_at = self.number(0)
-        self.rail, self.rail_length = (self.number(0), self.number(0)), self.number(0)
+        self.rail: Pair = (self.number(0), self.number(0))
+        self.rail_length: Num = self.number(0)
         if self.paddle is not None:
-            element = self.scene.elements[self.paddle]
+            element = self.elements[self.paddle]
             start, finish = self.pair(element.rail_start), self.pair(element.rail_end)
             self.rail_start = start
             self.rail, self.rail_length = self.direction(start, finish)
@@ -192,6 +200,10 @@ class Oracle:
             elif isinstance(element, Bumper):
                 radius = self.number(element.radius) + ball
                 found.append(Surface((index, "circle"), self.pair(element.center), zero, radius, None, None, radius))
+            elif isinstance(element, Flipper):
+                e = (mpmath.cos(element.rest_angle), mpmath.sin(element.rest_angle))
+                radius = self.number(element.radius) + ball
+                found += self.capsule(index, self.pair(element.pivot), e, self.number(element.length), radius, zero)
             elif isinstance(element, Paddle):
                 half = self.number(element.half_width)
                 e, s, u = self.rail, self.paddle_at, self.paddle_speed
@@ -258,7 +270,7 @@ class Oracle:
             self.last_crossing[index] = here
             x, v = self.at(t)
             self.events.append(Event(here, index, SENSOR, *x, *v))
-            if self.scene.elements[index].drain:
+            if self.elements[index].drain:
                 until, struck, self.out = t, [], True
                 break
         self.p, self.v = self.at(until)
@@ -298,8 +310,9 @@ class Oracle:
         if sensor.circle is not None:
             center, radius = sensor.circle
             return Surface((index, "circle"), self.pair(center), zero, self.number(radius), None, None, nothing)
-        start = self.pair(sensor.start)
-        e, length = self.direction(start, self.pair(sensor.end))
+        first, last = sensor.segment or ((0.0, 0.0), (0.0, 0.0))
+        start = self.pair(first)
+        e, length = self.direction(start, self.pair(last))
         return Surface((index, "line"), start, zero, nothing, (-e[1], e[0]), e, length)
 
     # ---- the bounce
@@ -316,7 +329,7 @@ class Oracle:
             if not closing:
                 return
             _, index, surface, n = min(closing, key=lambda c: c[:2])
-            before, self.v = self.v, self.after(self.scene.elements[index], surface.velocity, n)
+            before, self.v = self.v, self.after(index, surface.velocity, n)
             self.record(index, BOUNCE, before, n, surface.velocity)
         raise RuntimeError("the bounces at one instant do not come to an end")
 
@@ -326,15 +339,20 @@ class Oracle:
         n = self.direction(surface.origin, self.p)[0]
         return (-n[0], -n[1]) if surface.inside else n
 
-    def after(self, element: Any, u: Pair, n: Pair) -> Pair:
+    def after(self, index: int, u: Pair, n: Pair) -> Pair:
         """Law, then kick, then cap."""
+        element = self.elements[index]
         b = self.number(self.scene.ball.b) * self.number(element.b)
         f = self.number(self.scene.ball.f) * self.number(element.f)
         w = (self.v[0] - u[0], self.v[1] - u[1])
         approach = -dot(w, n)
         rebound = b * approach
-        if approach > self.number(element.kick_threshold):
+        if self.soft is None and approach < self.scene.rest_speed:
+            self.soft = self.now
+        cold = index not in self.kicked or self.now - self.kicked[index] >= element.cooldown
+        if element.kick > 0.0 and approach > self.number(element.kick_threshold) and cold:
             rebound += self.number(element.kick)
+            self.kicked[index] = self.now
         v = tuple(u[k] + f * (w[k] + approach * n[k]) + rebound * n[k] for k in (0, 1))
         speed = dot(v, v) ** self.number(0.5)
         if self.scene.max_speed is None or speed <= self.scene.max_speed:

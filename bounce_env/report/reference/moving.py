@@ -22,6 +22,8 @@ NEAR = 1e-7  # [m] from here on the hit is looked for between two instants
 CREEP = 1e-6  # [s]
 SOFT = 0.06  # [m/s] slower hits may be the engine's small hops
 
+_ANYWHERE = ((-1e9, -1e9), (1e9, 1e9))
+
 Num = Any
 Pair = tuple[Num, Num]
 
@@ -130,14 +132,14 @@ class Part:
         if not isinstance(e, Wall):
             room = (self.span - self.at[0]) if self.rates[0] > 0 else self.at[0]
             return room / abs(self.rates[0]), [-self.rates[0] if isinstance(e, Bumper) else mpf(0)]
-        (low_x, low_y), (high_x, high_y) = e.reach
+        (low_x, low_y), (high_x, high_y) = e.reach or _ANYWHERE
         best, after = mpmath.inf, list[Num]()
         for k, (low, high) in enumerate([(low_x, high_x), (low_y, high_y)] * 2):
             if self.rates[k]:
                 t = ((mpf(high) if self.rates[k] > 0 else mpf(low)) - self.at[k]) / self.rates[k]
                 if t < best:
                     best, after = t, [mpf(0) if j == k else r for j, r in enumerate(self.rates)]
-        d, v = ([b[i + 2] - b[i] for i in (0, 1)] for b in (self.at, self.rates))
+        d, v = ((b[2] - b[0], b[3] - b[1]) for b in (self.at, self.rates))
         a, b, c = dot(v, v), dot(d, v), dot(d, d) - mpf(e.shortest) ** 2
         if b < 0 and b * b >= a * c and (-b - mpmath.sqrt(b * b - a * c)) / a < best:
             best, after = (-b - mpmath.sqrt(b * b - a * c)) / a, [mpf(0)] * 4
@@ -155,11 +157,11 @@ class Part:
         self.cast()
 
     def _hold(self) -> None:
-        (low_x, low_y), (high_x, high_y) = self.element.reach
+        (low_x, low_y), (high_x, high_y) = self.element.reach or _ANYWHERE
         for k, (low, high) in enumerate([(low_x, high_x), (low_y, high_y)] * 2):
             if (self.at[k] - low < 1e-30 and self.rates[k] < 0) or (high - self.at[k] < 1e-30 and self.rates[k] > 0):
                 self.rates[k] = mpf(0)
-        d, v = ([b[i + 2] - b[i] for i in (0, 1)] for b in (self.at, self.rates))
+        d, v = ((b[2] - b[0], b[3] - b[1]) for b in (self.at, self.rates))
         if dot(d, d) - mpf(self.element.shortest) ** 2 < 1e-30 and dot(d, v) < 0:
             self.rates = [mpf(0)] * 4
 

@@ -1,0 +1,82 @@
+"""What a method is: something that plays a problem, at settings that trade time for accuracy."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from bounce_env.report.problems import Problem, Start
+
+Floats = npt.NDArray[np.float64]
+
+FRAMES = 60
+"""Frames a second: times at which places are compared are multiples of one."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """What a method did from one start.
+
+    places: (n, 2) [m] at the frames asked for. order: elements struck, one after the other; None where it is not known.
+    """
+
+    places: Floats
+    order: tuple[int, ...] | None
+
+
+class Player(ABC):
+    """A method that is ready to play one problem at one setting."""
+
+    @abstractmethod
+    def begin(self, start: Start) -> None:
+        """Put the ball at its start; not timed."""
+
+    @abstractmethod
+    def go(self, frames: int) -> None:
+        """Play so many frames from the start, watched by nobody: what is timed."""
+
+    @abstractmethod
+    def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
+        """Play from a start, and tell the places at these frames and the order of bounces."""
+
+    worlds = 1
+    """How many worlds `go` plays."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One point on a method's line. label: as the tables show it. value: a step [s], a tolerance, or None."""
+
+    label: str
+    value: Any = None
+
+
+class Method(ABC):
+    """One line of the diagrams."""
+
+    name: str
+    label: str
+    settings: tuple[Setting, ...]
+    quick: tuple[Setting, ...]
+    note: str
+    """Its best settings, for the table of methods."""
+
+    @abstractmethod
+    def why_not(self, problem: Problem) -> str | None:
+        """Return why it cannot play the problem, in words for the table; None where it can."""
+
+    @abstractmethod
+    def player(self, problem: Problem, setting: Setting, top_speed: float) -> Player:
+        """Get ready. top_speed: the greatest speed of the truths [m/s]."""
+
+
+def steps_of(per_second: int) -> Setting:
+    """Return a setting of a time stepper."""
+    return Setting(f"1/{per_second} s", per_second)
+
+
+STEPS = tuple(steps_of(FRAMES * 4**k) for k in range(5))
+"""1/60 to 1/15360 s."""
+QUICK_STEPS = (STEPS[1], STEPS[2])

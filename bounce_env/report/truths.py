@@ -1,0 +1,183 @@
+"""What is right: places at frames, the order of bounces and the growth of a small error, from the reference solvers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import mpmath
+import numpy as np
+import numpy.typing as npt
+from mpmath import mpf
+
+from bounce_env.report.reference.flights import BOUNCE, Oracle
+from bounce_env.report.reference.moving import MovingOracle
+from bounce_env.report.reference.pendulum import pendulum_flight
+from bounce_env.scene import Wall
+
+if TYPE_CHECKING:
+    from bounce_env.report.problems import Problem, Start
+
+DIGITS = 50
+COMPARED = 8
+"""How many times places are compared, evenly spaced."""
+
+_FRAMES = 60  # a second
+_DISPLACED = mpf(2) ** -100
+
+Num = Any
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What happens from one start. frames: (n,) when places are compared. places: (n, 2) [m].
+
+    growth: (n,) by how much a small error of the start has grown, at least 1. order: elements struck up to the last
+    frame, None where that is not compared. top_speed: the greatest after any bounce [m/s].
+    """
+
+    frames: npt.NDArray[np.int64]
+    places: Floats
+    growth: Floats
+    order: tuple[int, ...] | None
+    top_speed: float
+
+
+@dataclass(frozen=True)
+class _Leg:
+    """Free flight from an instant on."""
+
+    time: Num
+    x: Num
+    y: Num
+    vx: Num
+    vy: Num
+    element: int = -1
+
+
+def _leg(time: Num, numbers: Sequence[Num], element: int) -> _Leg:
+    x, y, vx, vy = numbers[:4]
+    return _Leg(time, x, y, vx, vy, element)
+
+
+def compared_frames(last: int) -> npt.NDArray[np.int64]:
+    """Return the frames at which places are compared, up to and including `last`."""
+    return np.unique(np.linspace(0, last, COMPARED + 1).astype(np.int64)[1:])
+
+
+def by_flights(problem: Problem, start: Start) -> Truth:
+    """Solve for what stands: polynomials at 50 digits, up to the first soft hit."""
+    with mpmath.workdps(DIGITS):
+        here, end = _flight_legs(problem, start, mpf(0))
+        there, _ = _flight_legs(problem, start, _DISPLACED)
+        return _truth(problem, here, there, compared_frames(int(end * _FRAMES)))
+
+
+def _flight_legs(problem: Problem, start: Start, shift: Num) -> tuple[list[_Leg], Num]:
+    x, y = mpf(start.position[0]) + shift, mpf(start.position[1]) + shift / 3
+    oracle = Oracle(problem.scene, mpf)
+    run = oracle.run((x, y), start.velocity, mpf(problem.frames) / _FRAMES, max_events=100_000)
+    legs = [_Leg(e.time, e.x, e.y, e.vx, e.vy, e.element) for e in run.events if e.kind == BOUNCE]
+    end = run.time if run.soft is None else run.soft
+    return [_Leg(mpf(0), x, y, *map(mpf, start.velocity)), *legs], end
+
+
+def by_creeping(problem: Problem, start: Start) -> Truth:
+    """Solve for what moves: bisection at 50 digits."""
+    with mpmath.workdps(DIGITS):
+        here, there = (_creeping_legs(problem, start, shift) for shift in (mpf(0), _DISPLACED))
+        return _truth(problem, here, there, compared_frames(problem.frames))
+
+
+def _creeping_legs(problem: Problem, start: Start, shift: Num) -> list[_Leg]:
+    x, y = mpf(start.position[0]) + shift, mpf(start.position[1]) + shift / 3
+    commands = [(mpf(frame) / _FRAMES, name, value) for frame, name, value in problem.commands]
+    hits = MovingOracle(problem.scene).run([(x, y)], [start.velocity], mpf(problem.frames) / _FRAMES, commands)
+    legs = [_leg(h.time, h.numbers, h.element) for h in hits if h.ball == 0]
+    return [_Leg(mpf(0), x, y, *map(mpf, start.velocity)), *legs]
+
+
+def _truth(problem: Problem, here: list[_Leg], there: list[_Leg], frames: npt.NDArray[np.int64]) -> Truth:
+    places, growth = [], []
+    for frame in frames.tolist():
+        x, y = _place(problem, here, mpf(frame) / _FRAMES)
+        other_x, other_y = _place(problem, there, mpf(frame) / _FRAMES)
+        places.append((float(x), float(y)))
+        growth.append(max(1.0, float(mpmath.hypot(other_x - x, other_y - y) / _DISPLACED)))
+    last = mpf(int(frames[-1])) / _FRAMES if len(frames) else mpf(0)
+    order = tuple(leg.element for leg in here[1:] if leg.time <= last)
+    speed = max(float(mpmath.hypot(leg.vx, leg.vy)) for leg in here)
+    return Truth(frames, np.array(places).reshape(-1, 2), np.array(growth), order if problem.ordered else None, speed)
+
+
+def _place(problem: Problem, legs: Sequence[_Leg], t: Num) -> tuple[Num, Num]:
+    leg = next(leg for leg in reversed(legs) if leg.time <= t)
+    s, (gx, gy) = t - leg.time, map(mpf, problem.scene.gravity)
+    return leg.x + (leg.vx + gx * s / 2) * s, leg.y + (leg.vy + gy * s / 2) * s
+
+
+def of_zeno(problem: Problem, start: Start) -> Truth:
+    """Solve a drop on one wall in closed form: hop after hop up to the accumulation, then a slide without friction."""
+    with mpmath.workdps(DIGITS):
+        scene = problem.scene
+        wall = scene.elements[0]
+        assert isinstance(wall, Wall)
+        dx, dy = (mpf(b) - mpf(a) for a, b in zip(wall.start, wall.end, strict=True))
+        length = mpmath.hypot(dx, dy)
+        ux, uy = dx / length, dy / length
+        nx, ny = -uy, ux
+        if (start.position[0] - wall.start[0]) * nx + (start.position[1] - wall.start[1]) * ny < 0:
+            nx, ny = -nx, -ny
+        frames = compared_frames(problem.frames)
+        places = [_zeno_place(problem, start, (ux, uy), (nx, ny), mpf(f) / _FRAMES) for f in frames.tolist()]
+        return Truth(frames, np.array(places), np.ones(len(frames)), None, 2.0 * abs(scene.gravity[1]))
+
+
+def _zeno_place(problem: Problem, start: Start, u: tuple[Num, Num], n: tuple[Num, Num], t: Num) -> tuple[float, float]:
+    scene, wall = problem.scene, problem.scene.elements[0]
+    assert isinstance(wall, Wall)
+    gravity = tuple(map(mpf, scene.gravity))
+    off = (mpf(start.position[0]) - mpf(wall.start[0]), mpf(start.position[1]) - mpf(wall.start[1]))
+    along, height = (off[0] * d[0] + off[1] * d[1] for d in (u, n))
+    speed, rise = (mpf(start.velocity[0]) * d[0] + mpf(start.velocity[1]) * d[1] for d in (u, n))
+    pull, press = (gravity[0] * d[0] + gravity[1] * d[1] for d in (u, n))
+    height -= mpf(scene.ball.radius)
+    e, left = mpf(scene.ball.b) * mpf(wall.b), t
+    s = along + speed * t + pull * t * t / 2
+    fall = (rise + mpmath.sqrt(rise * rise - 2 * press * height)) / -press
+    if left < fall:
+        height += rise * left + press * left * left / 2
+    else:
+        left, rise, height = left - fall, -e * (rise + press * fall), mpf(0)
+        whole = -2 * rise / press / (1 - e)
+        while left < whole and rise > mpf(10) ** -40:
+            hop = -2 * rise / press
+            if left < hop:
+                height = rise * left + press * left * left / 2
+                break
+            left, rise, whole = left - hop, e * rise, whole - hop
+    height += mpf(scene.ball.radius)
+    x, y = (mpf(wall.start[k]) + s * u[k] + height * n[k] for k in (0, 1))
+    return float(x), float(y)
+
+
+def of_bowl(problem: Problem, start: Start) -> Truth:
+    """Solve a slide that never ends."""
+    return _of_slide(problem, start, None)
+
+
+def of_loop(problem: Problem, start: Start) -> Truth:
+    """Solve a slide up to where it lets go, and the flight up to just before it strikes the circle again."""
+    return _of_slide(problem, start, 0.95)
+
+
+def _of_slide(problem: Problem, start: Start, share: float | None) -> Truth:
+    radius, pull = 1.0 - problem.scene.ball.radius, -problem.scene.gravity[1]
+    (x, y), speed = start.position, start.velocity[0]
+    place, end = pendulum_flight(radius, x, y, speed, pull, lets_go=share is not None)
+    last = problem.frames if share is None else min(problem.frames, int(share * end * _FRAMES))
+    frames = compared_frames(last)
+    places = np.array([place(mpf(f) / _FRAMES) for f in frames.tolist()])
+    return Truth(frames, places, np.ones(len(frames)), None, max(abs(speed), float(np.sqrt(4.0 * pull * radius))))

@@ -1,6 +1,6 @@
 """The problems of the report: a scene, starts, a script of commands, and the times at which places are compared."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from bounce_env.report import truths
 from bounce_env.report.truths import Truth
-from bounce_env.scene import Scene, load_scene
+from bounce_env.scene import Bumper, Scene, load_scene
 
 FRAME = 1.0 / 60.0
 """All times at which places are compared, and all commands, are multiples of it [s]: every stepper comes to them."""
@@ -121,7 +121,11 @@ def _before_wall(rng: np.random.Generator) -> Start:
 
 
 def _on_table(rng: np.random.Generator) -> Start:
-    return Start((float(rng.uniform(0.12, 0.38)), float(rng.uniform(0.72, 0.78))), _velocity(rng, 1.5))
+    bumpers = [e for e in load_scene("pinball").elements if isinstance(e, Bumper)]
+    while True:
+        x, y = float(rng.uniform(0.12, 0.38)), float(rng.uniform(0.62, 0.8))
+        if all(np.hypot(x - e.center[0], y - e.center[1]) > 2.0 * e.radius for e in bumpers):
+            return Start((x, y), _velocity(rng, 1.5))
 
 
 _SINAI = [(2.3, 2.6, 1.1), (7.1, 2.2, 0.9), (4.9, 5.3, 1.2), (2.2, 7.8, 0.8), (7.9, 7.2, 1.0)]
@@ -184,7 +188,7 @@ PROBLEMS = (
         _between(_FIELD, 2.0, 2.0), truths.by_flights, 90, chaotic=True,
     ),
     Problem(
-        "pinball", "Pinball table", "The game's table, flippers at rest, up to the first hit that is too slow to rebound: "
+        "pinball", "Pinball table", "The game's table, flippers at rest, up to the first hit too slow to rebound: "
         f"30 walls, an arch, bumpers and slingshots that kick. {_FLIGHTS}",
         _on_table, truths.by_flights, 90, chaotic=True,
     ),
@@ -194,9 +198,3 @@ PROBLEMS = (
 def problem(name: str) -> Problem:
     """Return the problem of this name; KeyError for an unknown one."""
     return {p.name: p for p in PROBLEMS}[name]
-
-
-def truths_of(which: Problem, starts: list[Start]) -> Iterator[Truth]:
-    """Solve the problem from each start."""
-    for start in starts:
-        yield which.truth(which, start)

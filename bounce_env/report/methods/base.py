@@ -20,10 +20,12 @@ class Trace:
     """What a method did from one start.
 
     places: (n, 2) [m] at the frames asked for. order: elements struck, one after the other; None where it is not known.
+    velocity: at the last of the frames [m/s]; None where nobody asks for it.
     """
 
     places: Floats
     order: tuple[int, ...] | None
+    velocity: tuple[float, float] | None = None
 
 
 class Player(ABC):

@@ -35,6 +35,7 @@ class Box2DScene:
         self.strikes: list[int] | None = None
         self.touched: Counter[int] = Counter()  # an arc is many shapes
         self._last_kick: dict[int, float] = {}
+        self._kicks: list[tuple[float, float, float]] = []
         for index, element in enumerate(scene.elements):
             if not isinstance(element, Sensor):
                 self._add(index, element)
@@ -82,6 +83,17 @@ class Box2DScene:
         self.ball.position = (position[0] * self.scale, position[1] * self.scale)
         self.ball.linearVelocity = (velocity[0] * self.scale, velocity[1] * self.scale)
 
+    def _give_kicks(self) -> None:
+        """Give a kick as soon as the ball has rebounded, which may be a step after it began to touch."""
+        waiting = []
+        for nx, ny, kick in self._kicks:
+            vx, vy = self.ball.linearVelocity
+            if vx * nx + vy * ny > 0.0:
+                self.ball.linearVelocity = (float(vx + nx * kick), float(vy + ny * kick))
+            else:
+                waiting.append((nx, ny, kick))
+        self._kicks = waiting
+
     def step(self, dt: float, now: float) -> None:
         """Take one step, then give the kicks and cut the speed as the scene asks."""
         self.begun.clear()
@@ -95,13 +107,14 @@ class Box2DScene:
             cold = now - self._last_kick.get(index, -math.inf) >= e.cooldown
             if e.kick > 0.0 and approach > e.kick_threshold and cold:
                 self._last_kick[index] = now
-                self.ball.linearVelocity += (nx * e.kick * self.scale, ny * e.kick * self.scale)
+                self._kicks.append((nx, ny, e.kick * self.scale))
+        self._give_kicks()
         cap = self.scene.max_speed
         if cap is not None:
             vx, vy = self.ball.linearVelocity
             speed = math.hypot(vx, vy)
             if speed > cap * self.scale:
-                share = cap * self.scale / speed
+                share = float(cap * self.scale / speed)
                 self.ball.linearVelocity = (vx * share, vy * share)
 
 
@@ -135,7 +148,8 @@ class _Listener(Box2D.b2ContactListener):  # type: ignore[misc]
             contact.enabled = left > 0.0 and closes < 0.0
 
     def _surface(self, contact: Any) -> tuple[Any, float, float]:
-        nx, ny = contact.worldManifold.normal
+        manifold = contact.worldManifold  # kept: its normal is a view of it
+        nx, ny = manifold.normal.x, manifold.normal.y
         if contact.fixtureA.body is self._scene.ball or contact.fixtureA.userData is None:
             return contact.fixtureB, -nx, -ny
         return contact.fixtureA, nx, ny
@@ -196,7 +210,8 @@ class Box2DPlayer(Player):
             now = frame
             x, y = self._peer.ball.position
             places.append((x / self._scale, y / self._scale))
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck))
+        vx, vy = self._peer.ball.linearVelocity
+        return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx / self._scale, vy / self._scale))
 
 
 class Box2DMethod(Method):

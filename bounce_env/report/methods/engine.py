@@ -1,6 +1,7 @@
 """This engine: at one call, at one call a frame, and in a batch."""
 
 from collections.abc import Callable, Collection
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,7 @@ from bounce_env.report.problems import Command, Problem, Start
 
 STRIKES = (EventKind.BOUNCE, EventKind.ABSORBED, EventKind.CORNER_BOUNCE)
 BATCH = 256
+UNLIMITED = 2**62
 
 
 class OneWorld(Player):
@@ -27,7 +29,7 @@ class OneWorld(Player):
     def go(self, frames: int) -> None:
         """Advance, in the calls that its commands need at least."""
         steps = range(1, frames + 1) if self._by_frame else (frames,)
-        _advance(self._world, self._commands, steps, self._world.advance)
+        _advance(self._world, self._commands, steps, partial(self._world.advance, max_events=UNLIMITED))
 
     def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
         """Advance from frame to frame, with the ledger."""
@@ -36,16 +38,17 @@ class OneWorld(Player):
         places: list[tuple[float, float]] = []
 
         def advance(seconds: float) -> None:
-            rows = self._world.advance(seconds, ledger=True)
+            rows = self._world.advance(seconds, ledger=True, max_events=UNLIMITED)
             assert rows is not None
-            struck.extend(int(row["element"]) for row in rows if row["kind"] in STRIKES)
+            struck.extend(rows["element"][np.isin(rows["kind"], STRIKES)].tolist())
 
         def look() -> None:
             x, y = self._world.position[0].tolist()
             places.append((x, y))
 
         _advance(self._world, self._commands, frames.tolist(), advance, look)
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck))
+        vx, vy = self._world.velocity[0].tolist()
+        return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx, vy))
 
 
 def _advance(

@@ -118,7 +118,8 @@ class MoreauPlayer(Player):
             struck += self._struck[:count].astype(int).tolist()
             places.append(self._ball[:2].copy())
             now = frame
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck))
+        _, _, vx, vy = self._ball.tolist()
+        return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx, vy))
 
 
 class Moreau(Method):

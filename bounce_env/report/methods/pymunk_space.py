@@ -72,7 +72,9 @@ class PymunkScene:
             touched[element] += 1
 
         def separate(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
-            touched[self.element_of[arbiter.shapes[1]]] -= 1
+            for shape in arbiter.shapes:  # when a space is thrown away, in any order
+                if shape in self.element_of:
+                    touched[self.element_of[shape]] -= 1
 
         self.space.on_collision(BALL, SURFACE, begin=begin, separate=separate)
 
@@ -195,7 +197,7 @@ class PymunkPlayer(Player):
             self.go(frame - now)
             now = frame
             places.append(tuple(self._peer.ball.position))
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck))
+        return Trace(np.array(places).reshape(-1, 2), tuple(struck), tuple(self._peer.ball.velocity))
 
 
 class Pymunk(Method):

@@ -97,7 +97,8 @@ class ScipyPlayer(Player):
         for frame in frames.tolist():
             self._integrate(frame / FRAMES)
             places.append((math.nan, math.nan) if self._given_up else self._ball[:2].copy())
-        return Trace(np.array(places).reshape(-1, 2), tuple(self._struck))
+        _, _, vx, vy = self._ball.tolist()
+        return Trace(np.array(places).reshape(-1, 2), tuple(self._struck), (vx, vy))
 
 
 class Scipy(Method):

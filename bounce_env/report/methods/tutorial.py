@@ -171,7 +171,8 @@ class TutorialPlayer(Player):
             struck += self._struck[: max(count, 0)].astype(int).tolist()
             places.append(self._ball[:2].copy() if count >= 0 else np.full(2, np.nan))
             now = frame
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck))
+        _, _, vx, vy = self._ball.tolist()
+        return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx, vy))
 
 
 class Tutorial(Method):

@@ -1,0 +1,225 @@
+"""What the report is made of: rows of numbers, and how they are written to JSON and CSV, and read again."""
+
+import csv
+import dataclasses
+import io
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from bounce_env.files import replacing
+
+SCHEMA = 1
+"""Version of `report.json`; it grows by one when a reader of the last one would misread it."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A median with its quartiles, over starts. Infinite where a run came to no end."""
+
+    median: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class ErrorRow:
+    """One method at one setting on one problem.
+
+    reason: why there are no numbers; "" where there are. error: the greatest distance from the truth at the times that
+    are compared [m], where the problem is chaotic over the growth of a small error. cost: microseconds of CPU for a
+    simulated second. wrong_order: share of starts with a wrong order of bounces; None where it is not compared.
+    missed: bounces fewer than there are, in all starts. lost: share of starts that left the scene or came to no end.
+    """
+
+    problem: str
+    method: str
+    setting: str
+    reason: str = ""
+    error: Spread | None = None
+    cost: Spread | None = None
+    wrong_order: float | None = None
+    missed: int | None = None
+    lost: float | None = None
+    starts: int = 0
+
+
+@dataclass(frozen=True)
+class LongRow:
+    """One method on one problem, for long.
+
+    energy: share of the energy that is gained or lost after so many `bounces`. right_bounces: how many come in the right
+    order before the first wrong one (median over starts); `of` so many that were compared.
+    """
+
+    problem: str
+    method: str
+    setting: str
+    reason: str = ""
+    energy: float | None = None
+    bounces: int | None = None
+    right_bounces: float | None = None
+    of: int | None = None
+
+
+@dataclass(frozen=True)
+class FeatureRow:
+    """A built-in scene on the kernel of its own features, and on the one that has them all.
+
+    Nanoseconds of CPU of a call of `advance` that meets nothing, of the least of many pieces, and of a bounce; seconds
+    of compiling and bytes of machine code of the kernel that advances.
+    """
+
+    scene: str
+    has: tuple[str, ...]
+    left_out: tuple[str, ...]
+    lean_step: float
+    general_step: float
+    lean_bounce: float | None
+    general_bounce: float | None
+    lean_compile: float | None
+    general_compile: float | None
+    lean_bytes: int | None
+    general_bytes: int | None
+
+
+@dataclass(frozen=True)
+class SpeedRow:
+    """How fast something steps: `rate` a second on one core, of so many `worlds`, median and quartiles over rounds."""
+
+    what: str
+    peer: bool
+    worlds: int
+    unit: str
+    rate: Spread
+
+
+Row = ErrorRow | LongRow | FeatureRow | SpeedRow
+
+PARTS: dict[str, type[Row]] = {"errors": ErrorRow, "long": LongRow, "features": FeatureRow, "speed": SpeedRow}
+"""The parts of a report by their names in `report.json`."""
+
+
+@dataclass
+class Report:
+    """header: where, when and with which options it was made. rows: by part, in the order in which they were measured."""
+
+    header: dict[str, Any]
+    rows: dict[str, list[Any]] = field(default_factory=lambda: {part: [] for part in PARTS})
+
+    def add(self, row: Row) -> None:
+        """Put a row into its part."""
+        self.rows[part_of(row)].append(row)
+
+    @property
+    def errors(self) -> list[ErrorRow]:
+        """Rows of error against run time."""
+        return self.rows["errors"]
+
+    @property
+    def long(self) -> list[LongRow]:
+        """Rows of long runs."""
+        return self.rows["long"]
+
+    @property
+    def features(self) -> list[FeatureRow]:
+        """Rows of what features cost."""
+        return self.rows["features"]
+
+    @property
+    def speed(self) -> list[SpeedRow]:
+        """Rows of steps a second."""
+        return self.rows["speed"]
+
+
+def part_of(row: Row) -> str:
+    """Return the name of the part that a row belongs to."""
+    return next(part for part, kind in PARTS.items() if isinstance(row, kind))
+
+
+def to_json(row: Row) -> dict[str, Any]:
+    """Return a row as JSON has it: what is not finite as a word, for JSON has no such numbers."""
+    plain: dict[str, Any] = _spelled(dataclasses.asdict(row))
+    return plain
+
+
+def _spelled(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {name: _spelled(item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_spelled(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return "nan" if math.isnan(value) else "inf" if value > 0 else "-inf"
+    return value
+
+
+def from_json(part: str, plain: Mapping[str, Any]) -> Row:
+    """Return the row that `to_json` wrote; raises ValueError for what is none."""
+    kind = PARTS[part]
+    names = {f.name for f in dataclasses.fields(kind)}
+    if set(plain) - names:
+        raise ValueError(f"{part}: unknown fields {sorted(set(plain) - names)}, must be of {sorted(names)}")
+    return kind(**{name: _read(value) for name, value in plain.items()})
+
+
+def _read(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return Spread(**{name: float(item) for name, item in value.items()})
+    if isinstance(value, list):
+        return tuple(value)
+    return float(value) if value in ("inf", "-inf", "nan") else value
+
+
+def write_report(report: Report, path: Path) -> None:
+    """Write `report.json`."""
+    rows = {part: [to_json(row) for row in rows] for part, rows in report.rows.items()}
+    with replacing(path) as unfinished:
+        text = json.dumps({"schema": SCHEMA, "header": report.header, **rows}, indent=1, allow_nan=False)
+        unfinished.write_text(text + "\n", encoding="utf-8")
+
+
+def read_report(path: Path) -> Report:
+    """Read a `report.json`; raises ValueError that says what of it is wrong."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{path}: cannot be read as a report: {error}") from error
+    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+        found = data.get("schema") if isinstance(data, dict) else None
+        raise ValueError(f"{path}: schema = {found!r}: must be {SCHEMA}")
+    report = Report(data.get("header", {}))
+    try:
+        for part in PARTS:
+            for plain in data.get(part, []):
+                report.add(from_json(part, plain))
+    except (TypeError, AttributeError) as error:
+        raise ValueError(f"{path}: {part}: {error}") from error
+    return report
+
+
+def write_csv(rows: Iterable[Row], path: Path) -> None:
+    """Write rows of one part as a table, a spread as three columns."""
+    flat = [_flat(row) for row in rows]
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, list(flat[0]) if flat else [])
+    writer.writeheader()
+    writer.writerows(flat)
+    with replacing(path) as unfinished:
+        unfinished.write_text(text.getvalue(), encoding="utf-8")
+
+
+_SPREADS = {"error", "cost", "rate"}
+
+
+def _flat(row: Row) -> dict[str, Any]:
+    columns: dict[str, Any] = {}
+    for name, value in dataclasses.asdict(row).items():
+        if name in _SPREADS:
+            for share in ("median", "low", "high"):
+                columns[f"{name}_{share}"] = None if value is None else value[share]
+        else:
+            columns[name] = " ".join(value) if isinstance(value, tuple) else value
+    return columns

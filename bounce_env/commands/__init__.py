@@ -8,7 +8,11 @@ from gymnasium.error import DependencyNotInstalled
 from bounce_env.commands.cli import BAD_USAGE, FINE, INTERRUPTED, Refused, complain, say
 from bounce_env.extras import missing, version
 
-EXTRAS = ("tyro", "tqdm", "imageio_ffmpeg")
+EXTRAS = {
+    **dict.fromkeys(("tyro", "tqdm", "imageio_ffmpeg"), "cli"),
+    **dict.fromkeys(("mpmath", "matplotlib", "jinja2"), "report"),
+}
+"""Modules that commands cannot do without, and the extra that has each."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,7 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if error.name not in EXTRAS:
             raise
-        return complain(str(missing("cli", error.name, "the commands need")))
+        return complain(str(missing(EXTRAS[error.name], error.name, "the command needs")))
     except (Refused, DependencyNotInstalled) as error:
         return complain(str(error))
     except KeyboardInterrupt:

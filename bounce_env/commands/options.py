@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 import tyro
 
@@ -192,6 +192,39 @@ class Watch:
 
 
 @dataclass(frozen=True)
+class Report:
+    """Measure error against run time, what features cost, and speed, beside other engines: a page, CSV, JSON and PNG.
+
+    Everything is measured anew. Ctrl-C leaves an older report whole; --resume goes on from there. Other engines are
+    those of the extra `report` that are installed. Exit code: 0 all is well, 1 --compare found worse errors.
+    """
+
+    part: Annotated[Literal["all", "error", "features", "speed"], tyro.conf.Positional] = "all"
+    """What of it."""
+    output: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("runs/report")
+    """Folder to write to."""
+    quick: bool = False
+    """Few starts and settings: a minute, where kernels are on disk."""
+    only: str = ""
+    """Scenes and methods, separated by commas: --only box,pymunk,engine"""
+    resume: bool = False
+    """Go on with an interrupted run of the same options and sources."""
+    compare: Path | None = None
+    """An older report.json: exit code 1 where an error of this engine has become worse."""
+    seed: int = 0
+    """Of the starts."""
+
+    def run(self) -> int:
+        """Make the report; returns the exit code."""
+        from bounce_env.commands.report import make_report  # noqa: PLC0415
+
+        return make_report(
+            self.part, output=self.output, quick=self.quick, only=self.only, resume=self.resume,
+            compare=self.compare, seed=self.seed,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
 class Doctor:
     """Print versions, processor, cache folder, display and ffmpeg: what a bug report needs."""
 
@@ -202,11 +235,12 @@ class Doctor:
         return diagnose()
 
 
-Command: TypeAlias = Scenes | Play | Watch | Doctor
+Command: TypeAlias = Scenes | Play | Watch | Report | Doctor
 _Commands: TypeAlias = (
     Annotated[Watch, tyro.conf.subcommand("watch")]
     | Annotated[Play, tyro.conf.subcommand("play")]
     | Annotated[Scenes, tyro.conf.subcommand("scenes")]
+    | Annotated[Report, tyro.conf.subcommand("report")]
     | Annotated[Doctor, tyro.conf.subcommand("doctor")]
 )
 

@@ -18,12 +18,17 @@ from bounce_env.scene import Scene
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is measured. shortest: CPU seconds for which one start is timed at least. bounces: of long runs."""
+    """How much is measured.
+
+    shortest: CPU seconds for which one start is timed at least. bounces: of long runs. longer: how many times as
+    long as the problem lasts the order of bounces is compared.
+    """
 
     seed: int
     starts: int
     shortest: float
     bounces: int
+    longer: int
     quick: bool
 
 
@@ -84,9 +89,6 @@ LONG = ("elastic_box", "gravity_box", "circle")
 ORDERED = ("box", "bumper_field")
 """Problems in which an error grows until the order of bounces is wrong."""
 
-LONGER = 8
-"""How many times longer the order of bounces is compared."""
-
 SLOWER = {"engine": 1, "engine_frames": 10, "tutorial_recheck": 10, "tutorial_once": 10, "moreau": 10, "scipy": 4000}
 """Of a long run's bounces a method makes one in so many; those that are not named one in 1000: it would take hours."""
 
@@ -126,7 +128,7 @@ def measure_order(which: Problem, method: Method, setting: Setting, plan: Plan) 
         reason = "the same bits as one world"
     if reason is not None:
         return LongRow(*where, reason=reason)
-    longer = replace(which, frames=LONGER * which.frames)
+    longer = replace(which, frames=plan.longer * which.frames)
     starts, truths = solved(longer, min(plan.starts, 5), plan.seed)
     player = method.player(longer, setting, max(truth.top_speed for truth in truths))
     counts = [

@@ -51,8 +51,8 @@ class ErrorRow:
 class LongRow:
     """One method on one problem, for long.
 
-    energy: share of the energy that is gained or lost after so many `bounces`. right_bounces: how many come in the right
-    order before the first wrong one (median over starts); `of` so many that were compared.
+    energy: share of the energy that is gained or lost after so many `bounces`. right_bounces: how many come in the
+    right order before the first wrong one (median over starts), `of` so many that were compared.
     """
 
     problem: str
@@ -67,10 +67,11 @@ class LongRow:
 
 @dataclass(frozen=True)
 class FeatureRow:
-    """A built-in scene on the kernel of its own features, and on the one that has them all.
+    """A built-in scene on the kernel of its own features (lean), and on the one that has them all (general).
 
-    Nanoseconds of CPU of a call of `advance` that meets nothing, of the least of many pieces, and of a bounce; seconds
-    of compiling and bytes of machine code of the kernel that advances.
+    step: ns of CPU for a world's step that meets nothing, in a batch. bounce: ns of CPU for a bounce, flight and all;
+    None where balls do not bounce for long. compile, bytes: seconds of compiling and machine code of the kernel that
+    advances a batch; None where that was not measured.
     """
 
     scene: str
@@ -105,7 +106,7 @@ PARTS: dict[str, type[Row]] = {"errors": ErrorRow, "long": LongRow, "features": 
 
 @dataclass
 class Report:
-    """header: where, when and with which options it was made. rows: by part, in the order in which they were measured."""
+    """header: where, when and with which options it was made. rows: by part, in the order of their measuring."""
 
     header: dict[str, Any]
     rows: dict[str, list[Any]] = field(default_factory=lambda: {part: [] for part in PARTS})

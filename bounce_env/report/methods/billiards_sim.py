@@ -1,4 +1,4 @@
-"""PyPI's `billiards`: exact and event-driven, without gravity, restitution and arcs. GPL-3: no extra of ours names it."""
+"""PyPI's `billiards`: exact and event-driven, without gravity and restitution. GPL-3: no extra of ours names it."""
 
 import billiards
 import numpy as np

@@ -1,0 +1,122 @@
+"""`report`."""
+
+from collections.abc import Collection, Iterable, Iterator
+from pathlib import Path
+
+from tqdm import tqdm
+
+from bounce_env.commands.cli import FINE, PROBLEMS, Refused, check_range, say
+from bounce_env.files import replacing
+from bounce_env.report.methods import all_methods
+from bounce_env.report.model import Report, read_report, write_csv, write_report
+from bounce_env.report.page import page_of, pictures_of
+from bounce_env.report.problems import PROBLEMS as PROBLEMS_OF_REPORT
+from bounce_env.report.run import PARTS, Job, Options, Store, run
+from bounce_env.report.winners import wins_of_peers, worse_errors
+from bounce_env.scene import builtin_scenes
+from bounce_env.wording import counted, unknown_name
+
+
+def make_report(
+    part: str, *, output: Path, quick: bool, only: str, resume: bool, compare: Path | None, seed: int
+) -> int:
+    """Measure, write and compare; returns PROBLEMS where an error has become worse than in `compare`."""
+    check_range("seed", seed, 0)
+    scenes, methods = _only(only)
+    older = _older(compare)
+    parts = PARTS if part == "all" else (part,)
+    options = Options(parts=parts, quick=quick, seed=seed, scenes=scenes, methods=methods)
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        store = Store(output / ".unfinished.jsonl", options, resume=resume)
+    except OSError as error:
+        raise Refused(f"--output {output}: cannot be written: {error}") from error
+    if resume:
+        say(f"{counted(len(store.rows), 'row')} of an interrupted run are taken over")
+    report = run(options, store, _progress)
+    _write(report, output)
+    store.remove()
+    _summarize(report, output)
+    return _compared(report, older)
+
+
+def _only(only: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the scenes and the methods that are named, in any order."""
+    scenes, methods = [], []
+    known_scenes = {*builtin_scenes(), *(p.name for p in PROBLEMS_OF_REPORT)}
+    known_methods = {method.name for method in all_methods()}
+    for name in filter(None, only.split(",")):
+        if name in known_scenes:
+            scenes.append(name)
+        elif name in known_methods:
+            methods.append(name)
+        else:
+            raise Refused(
+                f"--only {only}: {unknown_name(name, sorted(known_scenes | known_methods), 'scene or method')}"
+            )
+    return tuple(scenes), tuple(methods)
+
+
+def _older(compare: Path | None) -> Report | None:
+    if compare is None:
+        return None
+    try:
+        return read_report(compare)
+    except ValueError as error:
+        raise Refused(f"--compare {error}") from error
+
+
+def _progress(jobs: Collection[Job]) -> Iterable[Job]:
+    """Yield the jobs, and show which is under way; where nobody sees a bar move, a line for each tenth."""
+    with tqdm(total=len(jobs), unit=" rows", disable=None, leave=False) as bar:
+        yield from _shown(jobs, bar)
+
+
+def _shown(jobs: Collection[Job], bar: tqdm) -> Iterator[Job]:
+    for done, job in enumerate(jobs):
+        bar.set_postfix_str(job.name)
+        if bar.disable and done % max(1, len(jobs) // 10) == 0:
+            say(f"{done} of {len(jobs)} rows: {job.name} ...")
+        yield job
+        bar.update()
+
+
+def _write(report: Report, output: Path) -> None:
+    pictures = pictures_of(report)
+    page = page_of(report, pictures)
+    for name, data in pictures.items():
+        with replacing(output / name) as unfinished:
+            unfinished.write_bytes(data)
+    for part, rows in report.rows.items():
+        if rows:
+            write_csv(rows, output / f"{part}.csv")
+    with replacing(output / "report.html") as unfinished:
+        unfinished.write_text(page, encoding="utf-8")
+    write_report(report, output / "report.json")
+
+
+def _summarize(report: Report, output: Path) -> None:
+    say(f"{output / 'report.html'}: {', '.join(f'{len(rows)} {part}' for part, rows in report.rows.items() if rows)}")
+    wins = wins_of_peers(report.errors)
+    for win in wins:
+        say(
+            f"  {win.problem}: {win.peer.method} at {win.peer.setting} is faster and more accurate than {win.ours.method}"
+        )
+    if report.errors and not wins:
+        say("  no method is both faster and more accurate on any problem")
+
+
+def _compared(report: Report, older: Report | None) -> int:
+    if older is None:
+        return FINE
+    worse = worse_errors(report.errors, older.errors)
+    for row, old in worse:
+        assert row.error is not None
+        assert old.error is not None
+        say(
+            f"  worse: {row.problem} {row.method} {row.setting}: error {row.error.median:.2g}, was {old.error.median:.2g}; "
+            f"wrong order {row.wrong_order}, was {old.wrong_order}; lost {row.lost}, was {old.lost}"
+        )
+    if not worse:
+        say("  no error is worse than before")
+    return PROBLEMS if worse else FINE

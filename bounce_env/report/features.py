@@ -1,0 +1,117 @@
+"""Part 3: what a scene needs, what was left out of its kernel, and what that saves."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from bounce_env.engine import WorldBatch
+from bounce_env.engine.placement import place_clear
+from bounce_env.report.model import FeatureRow
+from bounce_env.scene import ALL_FEATURES, Feature, Scene, load_scene
+
+GENERAL = ALL_FEATURES - {Feature.SEVERAL_BALLS}
+"""All features of one ball: on these every scene of discs shares one kernel."""
+
+WORLDS = 256
+CALM = 2.0**-40
+"""A step so short that nothing happens in it [s]."""
+
+
+def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
+    """Measure a built-in scene. pieces: how many are timed, of which the least counts. compiled: compiles it afresh."""
+    scene = load_scene(name)
+    lean, general = (_costs(scene, features, pieces) for features in (frozenset[Feature](), GENERAL))
+    sizes = [_compiling(name, general=g) if compiled else (None, None) for g in (False, True)]
+    return FeatureRow(
+        scene=name,
+        has=tuple(sorted(map(str, scene.features))),
+        left_out=tuple(sorted(map(str, GENERAL - scene.features))),
+        lean_step=lean[0],
+        general_step=general[0],
+        lean_bounce=lean[1],
+        general_bounce=general[1],
+        lean_compile=sizes[0][0],
+        general_compile=sizes[1][0],
+        lean_bytes=sizes[0][1],
+        general_bytes=sizes[1][1],
+    )
+
+
+def _costs(scene: Scene, features: frozenset[Feature], pieces: int) -> tuple[float, float | None]:
+    """Return ns of CPU of a calm step, and of a bounce."""
+    batch = WorldBatch(scene, WORLDS, features=features)
+    places, speeds = _starts(scene)
+    batch.reset(position=places, velocity=speeds)
+    batch.advance(CALM)
+    step = least(lambda: batch.advance(CALM), pieces, repeats=20) / WORLDS
+    bounces = []
+    for _ in range(max(3, pieces // 10)):
+        batch.reset(position=places, velocity=speeds)
+        before = time.process_time_ns()
+        batch.advance(1.0)
+        spent = time.process_time_ns() - before
+        bounces.append(spent / max(1, int(batch.counts.bounces.sum())))
+    few = int(batch.counts.bounces.sum()) < WORLDS // 4
+    return step, None if few else min(bounces)
+
+
+def least(act: Callable[[], object], pieces: int, repeats: int) -> float:
+    """Return the least ns of CPU of one call, over pieces of so many."""
+    found = []
+    for _ in range(pieces):
+        before = time.process_time_ns()
+        for _ in range(repeats):
+            act()
+        found.append((time.process_time_ns() - before) / repeats)
+    return min(found)
+
+
+def _starts(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Draw starts that overlap nothing, where there is most room."""
+    rng = np.random.default_rng(0)
+    left, bottom, right, top = scene.bounds
+    places: list[tuple[float, float]] = []
+    while len(places) < WORLDS:
+        x, y = float(rng.uniform(left, right)), float(rng.uniform(bottom, top + 0.1 * (top == bottom)))
+        try:
+            places.append(place_clear(scene, {}, x, y))
+        except ValueError:
+            continue
+    return np.array(places), rng.normal(size=(WORLDS, 2)) * 2.0
+
+
+@cache
+def _compiling(name: str, *, general: bool) -> tuple[float | None, int | None]:
+    """Compile the kernel in a process and a folder of its own; returns seconds of CPU and bytes of machine code."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = [sys.executable, "-m", "bounce_env.report.features", name, str(int(general))]
+        environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
+        run = subprocess.run(words, capture_output=True, text=True, check=True, env=environment)
+    seconds, size = json.loads(run.stdout)
+    return float(seconds), int(size)
+
+
+def _compile_alone(name: str, general: bool) -> tuple[float, int]:
+    """Compile in this process what advances a batch of the scene."""
+    from bounce_env.engine.world_batch import batch_advance  # noqa: PLC0415 (its overloads are what is counted)
+
+    scene = load_scene(name)
+    batch = WorldBatch(scene, 1, features=GENERAL if general else ())
+    places, speeds = _starts(scene)
+    batch.reset(position=places[:1], velocity=speeds[:1])
+    before = time.process_time()
+    batch.advance(CALM)
+    seconds = time.process_time() - before
+    (compiled,) = batch_advance.overloads.values()  # type: ignore[attr-defined]
+    return seconds, len(compiled.library._get_compiled_object())
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps(_compile_alone(sys.argv[1], sys.argv[2] == "1")))

@@ -99,9 +99,8 @@ def _summarize(report: Report, output: Path) -> None:
     say(f"{output / 'report.html'}: {', '.join(f'{len(rows)} {part}' for part, rows in report.rows.items() if rows)}")
     wins = wins_of_peers(report.errors)
     for win in wins:
-        say(
-            f"  {win.problem}: {win.peer.method} at {win.peer.setting} is faster and more accurate than {win.ours.method}"
-        )
+        peer = f"{win.peer.method} at {win.peer.setting}"
+        say(f"  {win.problem}: {peer} is faster and more accurate than {win.ours.method}")
     if report.errors and not wins:
         say("  no method is both faster and more accurate on any problem")
 
@@ -113,10 +112,9 @@ def _compared(report: Report, older: Report | None) -> int:
     for row, old in worse:
         assert row.error is not None
         assert old.error is not None
-        say(
-            f"  worse: {row.problem} {row.method} {row.setting}: error {row.error.median:.2g}, was {old.error.median:.2g}; "
-            f"wrong order {row.wrong_order}, was {old.wrong_order}; lost {row.lost}, was {old.lost}"
-        )
+        what = f"{row.problem} {row.method} {row.setting}: error {row.error.median:.2g}, was {old.error.median:.2g}"
+        order = f"wrong order {row.wrong_order}, was {old.wrong_order}; lost {row.lost}, was {old.lost}"
+        say(f"  worse: {what}; {order}")
     if not worse:
         say("  no error is worse than before")
     return PROBLEMS if worse else FINE

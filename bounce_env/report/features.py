@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from bounce_env.engine import WorldBatch
 from bounce_env.engine.placement import place_clear
 from bounce_env.report.model import FeatureRow
-from bounce_env.scene import ALL_FEATURES, Feature, Scene, load_scene
+from bounce_env.scene import ALL_FEATURES, Ball, Feature, Scene, load_scene
 
 GENERAL = ALL_FEATURES - {Feature.SEVERAL_BALLS}
 """All features of one ball: on these every scene of discs shares one kernel."""
@@ -28,7 +28,9 @@ def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
     """Measure a built-in scene. pieces: how many are timed, of which the least counts. compiled: compiles it afresh."""
     scene = load_scene(name)
     lean, general = (_costs(scene, features, pieces) for features in (frozenset[Feature](), GENERAL))
-    sizes = [_compiling(name, general=g) if compiled else (None, None) for g in (False, True)]
+    sizes: list[tuple[float | None, int | None]] = [(None, None), (None, None)]
+    if compiled:
+        sizes = [_compiling(scene.features), _compiling(scene.features | GENERAL)]
     return FeatureRow(
         scene=name,
         has=tuple(sorted(map(str, scene.features))),
@@ -88,24 +90,23 @@ def _starts(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 @cache
-def _compiling(name: str, *, general: bool) -> tuple[float | None, int | None]:
+def _compiling(features: frozenset[Feature]) -> tuple[float, int]:
     """Compile the kernel in a process and a folder of its own; returns seconds of CPU and bytes of machine code."""
     with tempfile.TemporaryDirectory() as folder:
-        words = [sys.executable, "-m", "bounce_env.report.features", name, str(int(general))]
+        words = [sys.executable, "-m", "bounce_env.report.features", *features]
         environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
         run = subprocess.run(words, capture_output=True, text=True, check=True, env=environment)
     seconds, size = json.loads(run.stdout)
     return float(seconds), int(size)
 
 
-def _compile_alone(name: str, general: bool) -> tuple[float, int]:
-    """Compile in this process what advances a batch of the scene."""
+def compile_alone(features: Collection[str]) -> tuple[float, int]:
+    """Compile in this process what advances a batch with these features; returns seconds of CPU and bytes of code."""
     from bounce_env.engine.world_batch import batch_advance  # noqa: PLC0415 (its overloads are what is counted)
 
-    scene = load_scene(name)
-    batch = WorldBatch(scene, 1, features=GENERAL if general else ())
-    places, speeds = _starts(scene)
-    batch.reset(position=places[:1], velocity=speeds[:1])
+    ball = Ball(0.1 if Feature.BALL_RADIUS in features else 0.0)
+    batch = WorldBatch(Scene(gravity=(0, 0), ball=ball), 1, features=set(features) - {Feature.BALL_RADIUS})
+    batch.reset(position=[(0, 0)], velocity=[(0, 0)])
     before = time.process_time()
     batch.advance(CALM)
     seconds = time.process_time() - before
@@ -114,4 +115,4 @@ def _compile_alone(name: str, general: bool) -> tuple[float, int]:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(_compile_alone(sys.argv[1], sys.argv[2] == "1")))
+    sys.stdout.write(json.dumps(compile_alone(sys.argv[1:])))

@@ -41,7 +41,8 @@ def page_of(report: Report, pictures: Mapping[str, bytes]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"spread": _spread, "number": _number, "share": _share, "rate": _rate}
+    filters: dict[str, Any] = {"spread": _spread, "number": _number, "share": _share, "rate": _rate}
+    environment.filters |= filters
     template = environment.get_template("report.html.jinja")
     order = list(STYLES)
     problems = [

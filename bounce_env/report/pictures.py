@@ -3,6 +3,7 @@
 import io
 import math
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -12,16 +13,16 @@ from bounce_env.report.model import ErrorRow, FeatureRow, SpeedRow
 
 STYLES: Mapping[str, tuple[str, str]] = {
     "engine": ("#0b6e4f", "o"),
-    "engine_frames": ("#33a17c", "s"),
+    "engine_frames": ("#238a68", "s"),
     "engine_batch": ("#08402e", "*"),
     "tutorial_recheck": ("#7a5195", "^"),
-    "tutorial_once": ("#bc8ccb", "v"),
-    "moreau": ("#d1770a", "D"),
+    "tutorial_once": ("#a05fb8", "v"),
+    "moreau": ("#b3620a", "D"),
     "pymunk": ("#c0392b", "P"),
     "box2d": ("#2c6fbb", "X"),
     "scipy": ("#555555", "h"),
-    "by_hand": ("#999999", "p"),
-    "billiards": ("#b8860b", "d"),
+    "by_hand": ("#6f6f6f", "p"),
+    "billiards": ("#8a6a08", "d"),
 }
 """Colour and marker of each method: the same in all pictures, and told apart without colour."""
 
@@ -33,7 +34,7 @@ def work_precision(rows: Sequence[ErrorRow], labels: Mapping[str, str], unit: st
     """Draw error against run time of one problem, one line a method, labelled at its end."""
     figure, axes = _figure(8.6, 5.0)
     figure.subplots_adjust(left=0.1, right=0.68, top=0.97, bottom=0.12)
-    ends: list[tuple[float, float, str, str]] = []
+    ends: list[_End] = []
     for method, (colour, marker) in STYLES.items():
         points = sorted(
             (row.cost.median, max(row.error.median, SMALLEST), row.error.low, row.error.high)
@@ -48,7 +49,7 @@ def work_precision(rows: Sequence[ErrorRow], labels: Mapping[str, str], unit: st
         axes.errorbar(
             xs, ys, yerr=(low, high), color=colour, marker=marker, markersize=7, linewidth=1.4, elinewidth=0.8
         )
-        ends.append((xs[-1], ys[-1], labels.get(method, method), colour))
+        ends.append(_End(xs[-1], ys[-1], labels.get(method, method), colour))
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel("CPU time for a simulated second [µs], one core")
@@ -57,24 +58,37 @@ def work_precision(rows: Sequence[ErrorRow], labels: Mapping[str, str], unit: st
     return _png(figure)
 
 
-def _label_ends(axes: Axes, ends: list[tuple[float, float, str, str]]) -> None:
+class _End(NamedTuple):
+    """Where a line ends, and what is written there."""
+
+    x: float
+    y: float
+    name: str
+    colour: str
+
+
+GAP = 0.062
+"""Between two names, as a share of the height."""
+
+
+def _label_ends(axes: Axes, ends: Sequence[_End]) -> None:
     """Write each line's name to the right of the plot, with a thin line from its last point, none over another."""
     axes.autoscale_view()
-    bottom, top = (math.log(y) for y in axes.get_ylim())
-    wanted = sorted(((math.log(y) - bottom) / (top - bottom), x, y, name, colour) for x, y, name, colour in ends)
-    gap, at = 0.062, -math.inf
-    places = []
-    for share, *rest in wanted:
-        at = max(share, at + gap)
-        places.append((at, *rest))
-    over = max(0.0, places[-1][0] - 0.98) if places else 0.0
-    for k in range(len(places) - 1, -1, -1):
-        limit = 0.98 if k == len(places) - 1 else places[k + 1][0] - gap
-        places[k] = (min(places[k][0], limit) if over else places[k][0], *places[k][1:])
-    for share, x, y, name, colour in places:
+    bottom, top = map(math.log, axes.get_ylim())
+    # Of equally accurate ones that to the right comes last, so that its line crosses none.
+    ordered = sorted(ends, key=lambda end: (round(math.log(end.y), 1), -end.x))
+    heights = [(math.log(end.y) - bottom) / (top - bottom) for end in ordered]
+    for k in range(1, len(heights)):
+        heights[k] = max(heights[k], heights[k - 1] + GAP)
+    limit = 0.98
+    for k in reversed(range(len(heights))):
+        heights[k] = min(heights[k], limit)
+        limit = heights[k] - GAP
+    for end, height in zip(ordered, heights, strict=True):
+        line = {"arrowstyle": "-", "color": end.colour, "linewidth": 0.5, "shrinkB": 4, "relpos": (0.0, 0.5)}
         axes.annotate(
-            name, xy=(x, y), xycoords="data", xytext=(1.03, share), textcoords="axes fraction", color=colour,
-            fontsize=9.5, va="center", arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkB": 4},
+            end.name, xy=(end.x, end.y), xycoords="data", xytext=(1.03, height), textcoords="axes fraction",
+            color=end.colour, fontsize=9.5, va="center", arrowprops=line,
         )  # fmt: skip
 
 
@@ -110,7 +124,7 @@ def speed_picture(rows: Sequence[SpeedRow]) -> bytes:
         points = sorted((row.worlds, row.rate.median) for row in rows if row.what == what)
         xs, ys = [p[0] for p in points], [p[1] for p in points]
         axes.plot(xs, ys, color=colour, marker=marker, markersize=7, linewidth=1.4)
-        ends.append((xs[-1], ys[-1], what.removesuffix(", vector env"), colour))
+        ends.append(_End(xs[-1], ys[-1], what.removesuffix(", vector env"), colour))
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel("worlds of one vector environment")

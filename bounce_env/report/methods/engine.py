@@ -130,5 +130,5 @@ def engine_methods(features: Collection[str] = ()) -> tuple[Method, ...]:
     return (
         Engine("engine", "bounce_env, one call", features),
         Engine("engine_frames", "bounce_env, a call a frame", features),
-        Engine("engine_batch", f"bounce_env, a world of {BATCH}", features),
+        Engine("engine_batch", f"bounce_env, one of {BATCH}", features),
     )

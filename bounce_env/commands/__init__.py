@@ -35,7 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if error.name not in EXTRAS:
             raise
-        return complain(str(missing(EXTRAS[error.name], error.name, "the command needs")))
+        return complain(str(missing(EXTRAS[error.name], error.name, "the commands need")))
     except (Refused, DependencyNotInstalled) as error:
         return complain(str(error))
     except KeyboardInterrupt:

@@ -11,8 +11,8 @@ import numpy as np
 from bounce_env.report.measure import cost_of, error_of, right_bounces, spread
 from bounce_env.report.methods.base import Method, Setting, Trace
 from bounce_env.report.model import ErrorRow, LongRow
-from bounce_env.report.problems import Problem, Start
-from bounce_env.report.truths import Truth
+from bounce_env.report.problems import Problem
+from bounce_env.report.truths import Start, Truth
 from bounce_env.scene import Scene
 
 
@@ -35,7 +35,7 @@ class Plan:
 @cache
 def solved(which: Problem, count: int, seed: int) -> tuple[list[Start], list[Truth]]:
     """Return starts of a problem with their truths, but for those that end before anything can be compared."""
-    pairs = [(start, which.truth(which, start)) for start in which.starts(count, seed)]
+    pairs = [(start, which.solve(start)) for start in which.starts(count, seed)]
     kept = [(start, truth) for start, truth in pairs if len(truth.frames)]
     return [start for start, _ in kept], [truth for _, truth in kept]
 

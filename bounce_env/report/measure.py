@@ -8,8 +8,7 @@ import numpy as np
 
 from bounce_env.report.methods.base import FRAMES, Player, Trace
 from bounce_env.report.model import Spread
-from bounce_env.report.problems import Start
-from bounce_env.report.truths import Truth
+from bounce_env.report.truths import Start, Truth
 
 SHORTEST_PIECE = 2e-3
 """CPU seconds of the least piece that is timed; shorter ones are repeated."""

@@ -2,27 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from bounce_env.report import truths
-from bounce_env.report.truths import Truth
+from bounce_env.report.truths import Command, Question, Start, Truth
 from bounce_env.scene import Bumper, Scene, load_scene
 
 FRAME = 1.0 / 60.0
 """All times at which places are compared, and all commands, are multiples of it [s]: every stepper comes to them."""
-
-
-class Start(NamedTuple):
-    """Of the ball: place [m] and velocity [m/s]."""
-
-    position: tuple[float, float]
-    velocity: tuple[float, float]
-
-
-Command = tuple[int, str, Any]
-"""At which frame, the part, and the value as for `World.command`."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +26,7 @@ class Problem:
     title: str
     why: str
     new_start: Callable[[np.random.Generator], Start]
-    truth: Callable[["Problem", Start], Truth]
+    truth: Callable[[Question, Start], Truth]
     frames: int
     commands: tuple[Command, ...] = ()
     chaotic: bool = False
@@ -48,6 +36,10 @@ class Problem:
     def scene(self) -> Scene:
         """The scene."""
         return load_scene(self.name)
+
+    def solve(self, start: Start) -> Truth:
+        """Return what happens from a start."""
+        return self.truth(Question(self.scene, self.frames, self.commands, self.ordered), start)
 
     def starts(self, count: int, seed: int) -> list[Start]:
         """Return the starts, the same for every method."""

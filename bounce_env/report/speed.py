@@ -7,7 +7,6 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-import bounce_env  # noqa: F401 (registers the games)
 from bounce_env.engine import World, WorldBatch
 from bounce_env.report.measure import spread
 from bounce_env.report.model import SpeedRow

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import mpmath
 import numpy as np
@@ -14,10 +14,7 @@ from mpmath import mpf
 from bounce_env.report.reference.flights import BOUNCE, Oracle
 from bounce_env.report.reference.moving import MovingOracle
 from bounce_env.report.reference.pendulum import pendulum_flight
-from bounce_env.scene import Wall
-
-if TYPE_CHECKING:
-    from bounce_env.report.problems import Problem, Start
+from bounce_env.scene import Scene, Wall
 
 DIGITS = 50
 COMPARED = 8
@@ -27,7 +24,32 @@ _FRAMES = 60  # a second
 _DISPLACED = mpf(2) ** -100
 
 Num = Any
+Pair = tuple[Num, Num]
 Floats = npt.NDArray[np.float64]
+
+
+class Start(NamedTuple):
+    """Of the ball: place [m] and velocity [m/s]."""
+
+    position: tuple[float, float]
+    velocity: tuple[float, float]
+
+
+Command = tuple[int, str, Any]
+"""At which frame, the part, and the value as for `World.command`."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is to be solved: a scene for so many frames of 1/60 s, with commands.
+
+    ordered: whether bounces are finitely many, so that their order can be told.
+    """
+
+    scene: Scene
+    frames: int
+    commands: tuple[Command, ...]
+    ordered: bool
 
 
 @dataclass(frozen=True)
@@ -67,61 +89,61 @@ def compared_frames(last: int) -> npt.NDArray[np.int64]:
     return np.unique(np.linspace(0, last, COMPARED + 1).astype(np.int64)[1:])
 
 
-def by_flights(problem: Problem, start: Start) -> Truth:
+def by_flights(question: Question, start: Start) -> Truth:
     """Solve for what stands: polynomials at 50 digits, up to the first soft hit."""
     with mpmath.workdps(DIGITS):
-        here, end = _flight_legs(problem, start, mpf(0))
-        there, _ = _flight_legs(problem, start, _DISPLACED)
-        return _truth(problem, here, there, compared_frames(int(end * _FRAMES)))
+        here, end = _flight_legs(question, start, mpf(0))
+        there, _ = _flight_legs(question, start, _DISPLACED)
+        return _truth(question, here, there, compared_frames(int(end * _FRAMES)))
 
 
-def _flight_legs(problem: Problem, start: Start, shift: Num) -> tuple[list[_Leg], Num]:
+def _flight_legs(question: Question, start: Start, shift: Num) -> tuple[list[_Leg], Num]:
     x, y = mpf(start.position[0]) + shift, mpf(start.position[1]) + shift / 3
-    oracle = Oracle(problem.scene, mpf)
-    run = oracle.run((x, y), start.velocity, mpf(problem.frames) / _FRAMES, max_events=100_000)
+    oracle = Oracle(question.scene, mpf)
+    run = oracle.run((x, y), start.velocity, mpf(question.frames) / _FRAMES, max_events=100_000)
     legs = [_Leg(e.time, e.x, e.y, e.vx, e.vy, e.element) for e in run.events if e.kind == BOUNCE]
     end = run.time if run.soft is None else run.soft
     return [_Leg(mpf(0), x, y, *map(mpf, start.velocity)), *legs], end
 
 
-def by_creeping(problem: Problem, start: Start) -> Truth:
+def by_creeping(question: Question, start: Start) -> Truth:
     """Solve for what moves: bisection at 50 digits."""
     with mpmath.workdps(DIGITS):
-        here, there = (_creeping_legs(problem, start, shift) for shift in (mpf(0), _DISPLACED))
-        return _truth(problem, here, there, compared_frames(problem.frames))
+        here, there = (_creeping_legs(question, start, shift) for shift in (mpf(0), _DISPLACED))
+        return _truth(question, here, there, compared_frames(question.frames))
 
 
-def _creeping_legs(problem: Problem, start: Start, shift: Num) -> list[_Leg]:
+def _creeping_legs(question: Question, start: Start, shift: Num) -> list[_Leg]:
     x, y = mpf(start.position[0]) + shift, mpf(start.position[1]) + shift / 3
-    commands = [(mpf(frame) / _FRAMES, name, value) for frame, name, value in problem.commands]
-    hits = MovingOracle(problem.scene).run([(x, y)], [start.velocity], mpf(problem.frames) / _FRAMES, commands)
+    commands = [(mpf(frame) / _FRAMES, name, value) for frame, name, value in question.commands]
+    hits = MovingOracle(question.scene).run([(x, y)], [start.velocity], mpf(question.frames) / _FRAMES, commands)
     legs = [_leg(h.time, h.numbers, h.element) for h in hits if h.ball == 0]
     return [_Leg(mpf(0), x, y, *map(mpf, start.velocity)), *legs]
 
 
-def _truth(problem: Problem, here: list[_Leg], there: list[_Leg], frames: npt.NDArray[np.int64]) -> Truth:
+def _truth(question: Question, here: list[_Leg], there: list[_Leg], frames: npt.NDArray[np.int64]) -> Truth:
     places, growth = [], []
     for frame in frames.tolist():
-        x, y = _place(problem, here, mpf(frame) / _FRAMES)
-        other_x, other_y = _place(problem, there, mpf(frame) / _FRAMES)
+        x, y = _place(question, here, mpf(frame) / _FRAMES)
+        other_x, other_y = _place(question, there, mpf(frame) / _FRAMES)
         places.append((float(x), float(y)))
         growth.append(max(1.0, float(mpmath.hypot(other_x - x, other_y - y) / _DISPLACED)))
     last = mpf(int(frames[-1])) / _FRAMES if len(frames) else mpf(0)
     order = tuple(leg.element for leg in here[1:] if leg.time <= last)
     speed = max(float(mpmath.hypot(leg.vx, leg.vy)) for leg in here)
-    return Truth(frames, np.array(places).reshape(-1, 2), np.array(growth), order if problem.ordered else None, speed)
+    return Truth(frames, np.array(places).reshape(-1, 2), np.array(growth), order if question.ordered else None, speed)
 
 
-def _place(problem: Problem, legs: Sequence[_Leg], t: Num) -> tuple[Num, Num]:
+def _place(question: Question, legs: Sequence[_Leg], t: Num) -> tuple[Num, Num]:
     leg = next(leg for leg in reversed(legs) if leg.time <= t)
-    s, (gx, gy) = t - leg.time, map(mpf, problem.scene.gravity)
+    s, (gx, gy) = t - leg.time, map(mpf, question.scene.gravity)
     return leg.x + (leg.vx + gx * s / 2) * s, leg.y + (leg.vy + gy * s / 2) * s
 
 
-def of_zeno(problem: Problem, start: Start) -> Truth:
+def of_zeno(question: Question, start: Start) -> Truth:
     """Solve a drop on one wall in closed form: hop after hop up to the accumulation, then a slide without friction."""
     with mpmath.workdps(DIGITS):
-        scene = problem.scene
+        scene = question.scene
         wall = scene.elements[0]
         assert isinstance(wall, Wall)
         dx, dy = (mpf(b) - mpf(a) for a, b in zip(wall.start, wall.end, strict=True))
@@ -130,13 +152,15 @@ def of_zeno(problem: Problem, start: Start) -> Truth:
         nx, ny = -uy, ux
         if (start.position[0] - wall.start[0]) * nx + (start.position[1] - wall.start[1]) * ny < 0:
             nx, ny = -nx, -ny
-        frames = compared_frames(problem.frames)
-        places = [_zeno_place(problem, start, (ux, uy), (nx, ny), mpf(f) / _FRAMES) for f in frames.tolist()]
+        frames = compared_frames(question.frames)
+        places = [_zeno_place(question, start, (ux, uy), (nx, ny), mpf(f) / _FRAMES) for f in frames.tolist()]
         return Truth(frames, np.array(places), np.ones(len(frames)), None, 2.0 * abs(scene.gravity[1]))
 
 
-def _zeno_place(problem: Problem, start: Start, u: tuple[Num, Num], n: tuple[Num, Num], t: Num) -> tuple[float, float]:
-    scene, wall = problem.scene, problem.scene.elements[0]
+def _zeno_place(
+    question: Question, start: Start, u: tuple[Num, Num], n: tuple[Num, Num], t: Num
+) -> tuple[float, float]:
+    scene, wall = question.scene, question.scene.elements[0]
     assert isinstance(wall, Wall)
     gravity = tuple(map(mpf, scene.gravity))
     off = (mpf(start.position[0]) - mpf(wall.start[0]), mpf(start.position[1]) - mpf(wall.start[1]))
@@ -163,21 +187,21 @@ def _zeno_place(problem: Problem, start: Start, u: tuple[Num, Num], n: tuple[Num
     return float(x), float(y)
 
 
-def of_bowl(problem: Problem, start: Start) -> Truth:
+def of_bowl(question: Question, start: Start) -> Truth:
     """Solve a slide that never ends."""
-    return _of_slide(problem, start, None)
+    return _of_slide(question, start, None)
 
 
-def of_loop(problem: Problem, start: Start) -> Truth:
+def of_loop(question: Question, start: Start) -> Truth:
     """Solve a slide up to where it lets go, and the flight up to just before it strikes the circle again."""
-    return _of_slide(problem, start, 0.95)
+    return _of_slide(question, start, 0.95)
 
 
-def _of_slide(problem: Problem, start: Start, share: float | None) -> Truth:
-    radius, pull = 1.0 - problem.scene.ball.radius, -problem.scene.gravity[1]
+def _of_slide(question: Question, start: Start, share: float | None) -> Truth:
+    radius, pull = 1.0 - question.scene.ball.radius, -question.scene.gravity[1]
     (x, y), speed = start.position, start.velocity[0]
     place, end = pendulum_flight(radius, x, y, speed, pull, lets_go=share is not None)
-    last = problem.frames if share is None else min(problem.frames, int(share * end * _FRAMES))
+    last = question.frames if share is None else min(question.frames, int(share * end * _FRAMES))
     frames = compared_frames(last)
     places = np.array([place(mpf(f) / _FRAMES) for f in frames.tolist()])
     return Truth(frames, places, np.ones(len(frames)), None, max(abs(speed), float(np.sqrt(4.0 * pull * radius))))

@@ -5,7 +5,8 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.report.methods.base import FRAMES, Method, Player, Setting, Trace
-from bounce_env.report.problems import Problem, Start
+from bounce_env.report.problems import Problem
+from bounce_env.report.truths import Start
 from bounce_env.scene import Bumper, Wall, moves
 
 

@@ -11,7 +11,8 @@ import numpy.typing as npt
 from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
 from bounce_env.report.methods.pymunk_space import CHORDS, chords
 from bounce_env.report.methods.solids import offset_at, timelines_of
-from bounce_env.report.problems import Problem, Start
+from bounce_env.report.problems import Problem
+from bounce_env.report.truths import Start
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, moves
 
 FASTEST = 100.0

@@ -8,7 +8,8 @@ import numpy.typing as npt
 
 from bounce_env.engine import EventKind, World, WorldBatch
 from bounce_env.report.methods.base import FRAMES, Method, Player, Setting, Trace
-from bounce_env.report.problems import Command, Problem, Start
+from bounce_env.report.problems import Problem
+from bounce_env.report.truths import Command, Start
 
 STRIKES = (EventKind.BOUNCE, EventKind.ABSORBED, EventKind.CORNER_BOUNCE)
 BATCH = 256

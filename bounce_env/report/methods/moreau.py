@@ -14,7 +14,8 @@ import numpy.typing as npt
 from bounce_env.report.methods import solids
 from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
 from bounce_env.report.methods.solids import gap_to, solids_of, timelines_of
-from bounce_env.report.problems import Problem, Start
+from bounce_env.report.problems import Problem
+from bounce_env.report.truths import Start
 
 Floats = npt.NDArray[np.float64]
 

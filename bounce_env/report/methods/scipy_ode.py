@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 from bounce_env.report.methods import solids
 from bounce_env.report.methods.base import FRAMES, Method, Player, Setting, Trace
 from bounce_env.report.methods.solids import gap_to, solids_of, timelines_of
-from bounce_env.report.problems import Problem, Start
+from bounce_env.report.problems import Problem
+from bounce_env.report.truths import Start
 
 Floats = npt.NDArray[np.float64]
 

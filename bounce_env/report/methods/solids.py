@@ -12,7 +12,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.report.problems import Command
+from bounce_env.report.truths import Command
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Scene, Sensor, Wall
 
 Floats = npt.NDArray[np.float64]

@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
-from bounce_env.report.problems import Problem, Start
+from bounce_env.report.problems import Problem
+from bounce_env.report.truths import Start
 from bounce_env.scene import Ball, Scene, Wall
 
 Floats = npt.NDArray[np.float64]

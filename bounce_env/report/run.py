@@ -13,6 +13,7 @@ from typing import Any
 
 from bounce_env.engine.compile.cache import PACKAGE, sources_hash
 from bounce_env.extras import version
+from bounce_env.files import replacing
 from bounce_env.report.errors import Plan, jobs
 from bounce_env.report.features import GENERAL, measure_features
 from bounce_env.report.methods import all_methods
@@ -130,8 +131,9 @@ class Store:
         self.rows: dict[str, Row] = {}
         if resume:
             self._read()
-        if not self.rows:
-            path.write_text(json.dumps(self._key) + "\n", encoding="utf-8")
+        lines = [json.dumps(self._key), *(self._line(name, row) for name, row in self.rows.items())]
+        with replacing(path) as unfinished:
+            unfinished.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
     def _read(self) -> None:
         try:
@@ -148,7 +150,11 @@ class Store:
         """Append a row."""
         self.rows[name] = row
         with self._path.open("a", encoding="utf-8") as file:
-            file.write(json.dumps([name, part_of(row), to_json(row)]) + "\n")
+            file.write(self._line(name, row) + "\n")
+
+    @staticmethod
+    def _line(name: str, row: Row) -> str:
+        return json.dumps([name, part_of(row), to_json(row)])
 
     def remove(self) -> None:
         """Forget all: the report is written."""

@@ -9,10 +9,10 @@ different physics, it would stay.
 import math
 
 import numpy as np
-import pymunk
 import pytest
 
 from bounce_env.engine.world import World
+from bounce_env.report.methods.pymunk_space import PymunkScene
 from bounce_env.scene import Ball, Bumper, Scene, Wall
 from tests.conftest import soak_count
 from tests.reference.random_scenes import box, direction, free_point
@@ -54,31 +54,12 @@ def flown(state, gravity, t):
     return np.concatenate([p + v * t + g * t * t / 2, v + g * t])
 
 
-def space_of(scene):
-    space = pymunk.Space()
-    space.gravity = scene.gravity
-    space.collision_slop = 0.0  # no overlap is tolerated
-    space.collision_bias = 0.0  # and none is left after a step
-    for element in scene.elements:
-        if isinstance(element, Wall):
-            shape = pymunk.Segment(space.static_body, element.start, element.end, 0.0)
-        else:
-            shape = pymunk.Circle(space.static_body, element.radius, element.center)
-        shape.elasticity = element.b
-        space.add(shape)
-    body = pymunk.Body(mass=1.0, moment=math.inf)  # no spin
-    ball = pymunk.Circle(body, scene.ball.radius)
-    ball.elasticity = scene.ball.b
-    space.add(body, ball)
-    return space, body
-
-
 def stepped(scene, state, steps, dt):
-    space, body = space_of(scene)
-    body.position, body.velocity = tuple(state[:2]), tuple(state[2:])
+    peer = PymunkScene(scene)
+    peer.ball.position, peer.ball.velocity = tuple(state[:2]), tuple(state[2:])
     for _ in range(steps):
-        space.step(dt)
-    return np.array([*body.position, *body.velocity])
+        peer.space.step(dt)
+    return np.array([*peer.ball.position, *peer.ball.velocity])
 
 
 def order_of(errors):

@@ -16,6 +16,7 @@ from typing import get_args
 import pytest
 
 import bounce_env
+from bounce_env.report.problems import PROBLEMS
 from bounce_env.scene import Ball, Bumper, Element, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
 
 pytestmark = pytest.mark.fast
@@ -26,7 +27,9 @@ def elements(scene: Scene, spec: type) -> list:
 
 
 def test_which_there_are():
-    assert builtin_scenes() == ("box", "guides", "paddle", "paddle_levels", "pegs", "pinball", "walls")
+    of_games = {"paddle", "paddle_levels", "pinball", "walls"}
+    of_report = {problem.name for problem in PROBLEMS}
+    assert set(builtin_scenes()) == {"guides", "pegs"} | of_games | of_report
 
 
 @pytest.mark.parametrize("spec", [Scene, Ball, *get_args(Element)], ids=lambda spec: spec.__name__)

@@ -16,6 +16,7 @@ PACKAGES = {
     "render": ("pygame-ce",),
     "cli": ("tyro", "tqdm", "imageio-ffmpeg"),
     "sb3": ("stable-baselines3", "torch"),
+    "report": ("pymunk", "Box2D", "scipy", "mpmath", "matplotlib", "jinja2"),
 }
 """By the extra that installs them; "" for what is always there."""
 

@@ -21,8 +21,6 @@ from bounce_env import (
     Wall,
     World,
     WorldBatch,
-    builtin_scenes,
-    load_scene,
 )
 from bounce_env.engine.packing import pack
 
@@ -153,10 +151,6 @@ def test_a_snapshot_goes_on_in_a_world_with_the_same_features_only():
     with pytest.raises(ValueError, match="must be restored into a world of an equal one with the same features"):
         lean.restore(general.snapshot())
     World(scene, features=ALL_FEATURES).restore(general.snapshot())
-
-
-def test_all_built_in_scenes_need_twelve_sets_of_features_at_most():
-    assert len({load_scene(name).features for name in builtin_scenes()}) <= 12
 
 
 # ---- batches

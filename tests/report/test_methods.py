@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bounce_env.engine import tutorial
+from bounce_env.report.errors import solved
 from bounce_env.report.measure import error_of
 from bounce_env.report.methods import all_methods
 from bounce_env.report.methods.base import Method, steps_of
@@ -18,8 +19,7 @@ OTHERS = {"scipy", "by_hand"}
 
 
 def median_error(which: Problem, method: Method, setting, count: int = 5) -> float:
-    starts = which.starts(count, 0)
-    truths = [which.solve(start) for start in starts]
+    starts, truths = solved(which, count, 0)
     player = method.player(which, setting, max(truth.top_speed for truth in truths))
     errors = [
         error_of(player.trace(start, truth.frames), truth, chaotic=which.chaotic)
@@ -45,10 +45,13 @@ def test_the_compiled_stepper_is_the_tutorials_to_the_bit(name: str, recheck: bo
 @pytest.mark.parametrize("method", STEPPERS, ids=lambda m: m.name)
 @pytest.mark.parametrize("name", ["gravity_box", "circle", "flipper_strike", "closing_wall", "pinball"])
 def test_steppers_come_nearer_to_the_truth_with_smaller_steps(name: str, method: Method):
-    """So they mean the same physics as the truth: kicks, caps, moving parts and arcs included."""
+    """So they mean the same physics as the truth: kicks, caps, moving parts and arcs included.
+
+    Box2D up to its slop, which does not shrink with its step.
+    """
     which = problem(name)
     coarse, fine = (median_error(which, method, steps_of(60 * k)) for k in (1, 64))
-    assert fine < 0.5 * coarse
+    assert fine < (1.0 if method.name == "box2d" else 0.5) * coarse
     assert fine < 0.1
 
 

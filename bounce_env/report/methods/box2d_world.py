@@ -1,10 +1,10 @@
 """A scene in Box2D 2.3 (pybox2d): fixed steps, continuous collision, 5 mm of slop. Needs Box2D, an extra."""
 
 import math
+import warnings
 from collections import Counter
 from typing import Any
 
-import Box2D
 import numpy as np
 import numpy.typing as npt
 
@@ -14,6 +14,10 @@ from bounce_env.report.methods.solids import offset_at, timelines_of
 from bounce_env.report.problems import Problem
 from bounce_env.report.truths import Start
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, moves
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")  # Python warns of SWIG's types while they are made; as an error that would crash it
+    import Box2D
 
 FASTEST = 100.0
 """Scaled speed [m/s]: Box2D moves nothing further than 2 m in a step, which at 1/60 s is 120 m/s."""

@@ -193,13 +193,13 @@ class Watch:
 
 @dataclass(frozen=True)
 class Report:
-    """Measure error against run time, what features cost, and speed, beside other engines: a page, CSV, JSON and PNG.
+    """Measure errors, stability, what features cost, and speed, beside other engines: a page, CSV, JSON and PNG.
 
     Everything is measured anew. Ctrl-C leaves an older report whole; --resume goes on from there. Other engines are
     those of the extra `report` that are installed. Exit code: 0 all is well, 1 --compare found worse errors.
     """
 
-    part: Annotated[Literal["all", "error", "features", "speed"], tyro.conf.Positional] = "all"
+    part: Annotated[Literal["all", "error", "stability", "features", "speed"], tyro.conf.Positional] = "all"
     """What of it."""
     output: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("runs/report")
     """Folder to write to."""

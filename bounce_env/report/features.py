@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from bounce_env.engine import WorldBatch
-from bounce_env.engine.placement import place_clear
+from bounce_env.engine.placement import part_cores_at_start, place_clear
 from bounce_env.report.model import FeatureRow
 from bounce_env.scene import ALL_FEATURES, Ball, Feature, Scene, load_scene
 
@@ -77,13 +77,13 @@ def least(act: Callable[[], object], pieces: int, repeats: int) -> float:
 
 def _starts(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Draw starts that overlap nothing, where there is most room."""
-    rng = np.random.default_rng(0)
+    rng, cores = np.random.default_rng(0), part_cores_at_start(scene)
     left, bottom, right, top = scene.bounds
     places: list[tuple[float, float]] = []
     while len(places) < WORLDS:
         x, y = float(rng.uniform(left, right)), float(rng.uniform(bottom, top + 0.1 * (top == bottom)))
         try:
-            places.append(place_clear(scene, {}, x, y))
+            places.append(place_clear(scene, cores, x, y))
         except ValueError:
             continue
     return np.array(places), rng.normal(size=(WORLDS, 2)) * 2.0

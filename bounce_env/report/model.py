@@ -98,9 +98,42 @@ class SpeedRow:
     rate: Spread
 
 
-Row = ErrorRow | LongRow | FeatureRow | SpeedRow
+@dataclass(frozen=True)
+class StabilityRow:
+    """One hard case.
 
-PARTS: dict[str, type[Row]] = {"errors": ErrorRow, "long": LongRow, "features": FeatureRow, "speed": SpeedRow}
+    kind: stiff, extreme or degenerate. why: what makes it hard. source: where the right answer comes from. what: of all
+    that the case expects the worst, with `expected`, `seen`, `error` and the `bound` that was stated beforehand (SI
+    units; of what is no number 0 is right and 1 wrong). cost: microseconds of CPU of the whole run, with its ledger.
+    pymunk, box2d, tutorial: where these have the ball at the end, at 1/960 s.
+    """
+
+    mechanism: str
+    kind: str
+    case: str
+    why: str
+    source: str
+    what: str
+    expected: str
+    seen: str
+    error: float
+    bound: float
+    verdict: str
+    cost: float
+    pymunk: str
+    box2d: str
+    tutorial: str
+
+
+Row = ErrorRow | LongRow | StabilityRow | FeatureRow | SpeedRow
+
+PARTS: dict[str, type[Row]] = {
+    "errors": ErrorRow,
+    "long": LongRow,
+    "stability": StabilityRow,
+    "features": FeatureRow,
+    "speed": SpeedRow,
+}
 """The parts of a report by their names in `report.json`."""
 
 
@@ -124,6 +157,11 @@ class Report:
     def long(self) -> list[LongRow]:
         """Rows of long runs."""
         return self.rows["long"]
+
+    @property
+    def stability(self) -> list[StabilityRow]:
+        """Rows of hard cases."""
+        return self.rows["stability"]
 
     @property
     def features(self) -> list[FeatureRow]:
@@ -218,7 +256,7 @@ _SPREADS = {"error", "cost", "rate"}
 def _flat(row: Row) -> dict[str, Any]:
     columns: dict[str, Any] = {}
     for name, value in dataclasses.asdict(row).items():
-        if name in _SPREADS:
+        if name in _SPREADS and (value is None or isinstance(value, dict)):
             for share in ("median", "low", "high"):
                 columns[f"{name}_{share}"] = None if value is None else value[share]
         else:

@@ -21,9 +21,12 @@ from bounce_env.report.methods.base import Method
 from bounce_env.report.model import Report, Row, from_json, part_of, to_json
 from bounce_env.report.problems import PROBLEMS, Problem
 from bounce_env.report.speed import speed_jobs
+from bounce_env.report.stability.cases import CASES
+from bounce_env.report.stability.measure import measure_case
+from bounce_env.report.stability.mechanisms import MECHANISMS, tried_cases
 from bounce_env.scene import builtin_scenes
 
-PARTS = ("error", "features", "speed")
+PARTS = ("error", "stability", "features", "speed")
 """What `report` can be asked for, besides all."""
 
 QUICK_FEATURES = ("elastic_box", "box")
@@ -56,6 +59,8 @@ def planned(options: Options) -> tuple[list[Job], tuple[Method, ...]]:
     found: list[Job] = []
     if "error" in options.parts:
         found += [Job("error", name, partial(f, *a)) for name, f, a in jobs(*_chosen(options, methods), _plan(options))]
+    if "stability" in options.parts and not (options.scenes or options.methods):
+        found += _stability_jobs(options)
     if "features" in options.parts:
         found += _feature_jobs(options)
     if "speed" in options.parts and not (options.scenes or options.methods):
@@ -72,6 +77,19 @@ def _plan(options: Options) -> Plan:
     if options.quick:
         return Plan(options.seed, starts=3, shortest=2e-4, bounces=20_000, longer=3, quick=True)
     return Plan(options.seed, starts=20, shortest=2e-3, bounces=1_000_000, longer=8, quick=False)
+
+
+def _stability_jobs(options: Options) -> list[Job]:
+    most_cases, most_steps = (2, 2000) if options.quick else (len(CASES), 60_000)
+    return [
+        Job(
+            "stability",
+            f"stability {mechanism.name}: {words}",
+            partial(measure_case, mechanism, case, image, words, most_steps),
+        )
+        for mechanism in MECHANISMS
+        for case, image, words in list(tried_cases(mechanism))[:most_cases]
+    ]
 
 
 def _feature_jobs(options: Options) -> list[Job]:

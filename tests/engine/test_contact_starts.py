@@ -8,9 +8,9 @@ import pytest
 
 from bounce_env import Arc, Ball, EventKind, Scene, Wall, World
 from bounce_env.engine.placement import element_gaps
+from bounce_env.report.stability.case import new_world
 from tests.conftest import soak_count
 from tests.engine.contact_starts import ROOM, G, Start, starts
-from tests.stability.stability_case import new_world
 
 PARTS = 4
 PIECES = 32  # of one second

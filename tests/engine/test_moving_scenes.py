@@ -9,9 +9,9 @@ from bounce_env import Scene, Wall
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, OK
 from bounce_env.engine.placement import element_gaps
 from bounce_env.engine.world import World
+from bounce_env.report.stability.case import new_world
 from tests.conftest import soak_count
 from tests.engine.moving_scenes import MAX_SPEED, command_at_random, moving_scene, start
-from tests.stability.stability_case import new_world
 
 pytestmark = pytest.mark.slow
 

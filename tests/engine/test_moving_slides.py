@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from bounce_env import Arc, Ball, Bumper, EventKind, Field, Paddle, Scene, Sensor, Status, Wall, World
+from bounce_env.report.stability.case import new_world
 from tests.engine.in_pieces import assert_same_in_pieces
-from tests.stability.stability_case import new_world
 
 R, RADIUS, G = 0.3, 0.05, 9.81
 RHO = R + RADIUS

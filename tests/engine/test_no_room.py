@@ -8,7 +8,7 @@ import pytest
 from bounce_env import Ball, Bumper, Scene, Wall
 from bounce_env.engine.memory.records import CRUSHED, OK
 from bounce_env.engine.world import World
-from tests.stability.stability_case import new_world
+from bounce_env.report.stability.case import new_world
 
 R, CAP = 0.125, 50.0
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from bounce_env import Ball, Flipper, Paddle, Scene, Wall
+from bounce_env.report.stability.case import new_world
 from tests.conftest import soak_count
-from tests.stability.stability_case import new_world
 
 pytestmark = pytest.mark.slow
 

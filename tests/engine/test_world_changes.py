@@ -7,7 +7,7 @@ import pytest
 
 from bounce_env import Arc, Ball, Bumper, Paddle, Scene, Sensor, Wall, World
 from bounce_env.engine.memory.records import CROSSING
-from tests.stability.stability_case import new_world
+from bounce_env.report.stability.case import new_world
 
 pytestmark = pytest.mark.fast
 

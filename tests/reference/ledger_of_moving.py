@@ -11,12 +11,12 @@ import numpy.typing as npt
 
 from bounce_env.engine.memory.records import ABSORBED, BOUNCE, LEDGER
 from bounce_env.engine.world import World
+from bounce_env.report.stability.case import new_world
 from bounce_env.scene import Ball, Bumper, Element, Flipper, Paddle, Scene, Wall
 from tests.engine.moving_scenes import command_at_random, moving_scene
 from tests.engine.moving_scenes import start as place_at_random
 from tests.reference.ledger_checker import BUDGET, End, Start, find_problems_of_all
 from tests.reference.ledger_drive import Command, Value
-from tests.stability.stability_case import new_world
 
 Point = tuple[float, float]
 

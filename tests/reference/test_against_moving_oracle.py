@@ -14,9 +14,9 @@ from mpmath import mpf
 
 from bounce_env.engine.placement import part_cores_at_start, place_clear, separate_placed_balls
 from bounce_env.report.reference.moving import MovingOracle
+from bounce_env.report.stability.case import new_world
 from bounce_env.scene import Ball, Bumper, Flipper, Paddle, Scene, Wall
 from tests.conftest import soak_count
-from tests.stability.stability_case import new_world
 
 pytestmark = pytest.mark.slow
 

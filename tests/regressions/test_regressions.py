@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from bounce_env import World, load_scene
-from tests.stability.stability_case import STATUS, Run, new_world
+from bounce_env.report.stability.case import STATUS, Run, new_world
 
 FOLDER = Path(__file__).parent / "cases"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.json"))

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -73,6 +74,20 @@ def test_long_runs_keep_energy(folder: Path):
         assert row.energy < 1e-10
 
 
+def test_no_hard_case_is_wrong(folder: Path):
+    rows = read_report(folder / "report.json").stability
+    assert len(rows) >= (120 if SOAK else 80)
+    tried = Counter(row.mechanism for row in rows)
+    assert len(tried) >= 30
+    assert min(tried.values()) >= 2
+    assert {row.kind for row in rows} == {"stiff", "extreme", "degenerate"}
+    for row in rows:
+        assert row.verdict == "right", row
+        assert row.why
+        assert row.source
+        assert all(row.__dict__[peer] for peer in ("pymunk", "box2d", "tutorial"))
+
+
 def test_the_page_stands_alone_and_describes_its_pictures(folder: Path):
     page = (folder / "report.html").read_text()
     assert len(page) < 10_000_000
@@ -84,7 +99,7 @@ def test_the_page_stands_alone_and_describes_its_pictures(folder: Path):
     for which in PROBLEMS:
         assert f'id="error-{which.name}"' in page
         assert (folder / f"error_{which.name}.png").read_bytes().startswith(b"\x89PNG")
-    for part in ("errors", "long", "features", "speed"):
+    for part in ("errors", "long", "stability", "features", "speed"):
         assert len((folder / f"{part}.csv").read_text().splitlines()) > 2
     assert not list(folder.glob(".*"))  # nothing unfinished is left
 
@@ -196,3 +211,4 @@ def test_the_full_report_has_the_scenes_methods_and_settings_that_it_promises():
     assert "error circle box2d 1/60 s" in names
     assert "speed Bounce/Pinball-v0, vector env 65536" in names
     assert "features walls" in names
+    assert sum(name.startswith("stability ") for name in names) >= 120

@@ -7,11 +7,11 @@ cases share two kernels, one for discs and one for points: those that have every
 import numpy as np
 import pytest
 
+from bounce_env.report.stability.case import Case, Run, judge, new_world, play
+from bounce_env.report.stability.cases import CASES
+from bounce_env.report.stability.images import Image
 from tests.conftest import soak_count
-from tests.stability.stability_case import Case, Run, judge, new_world, play
-from tests.stability.stability_cases import CASES
-from tests.stability.stability_clearance import deepest
-from tests.stability.stability_images import Image
+from tests.stability.clearance import deepest
 
 pytestmark = pytest.mark.slow
 

@@ -125,7 +125,7 @@ def points_scene(scene: Scene, position: Point) -> Scene:
         ends = []
         for end in (wall.start, wall.end):
             other = next((o for o in lines if o[2] is not wall and end in (o[2].start, o[2].end)), None)
-            if other is None:
+            if other is None or along[0] * other[1][1] == along[1] * other[1][0]:  # or it goes on in the same line
                 ends.append((at[0] + end[0] - wall.start[0], at[1] + end[1] - wall.start[1]))
             else:
                 ends.append(_crossing(at, along, other[0], other[1]))

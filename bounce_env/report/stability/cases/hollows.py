@@ -2,10 +2,10 @@
 
 import math
 
+from bounce_env.report.stability.case import Case, between, going, last_time, resting
+from bounce_env.report.stability.cases.curves import DOWN, TURN, energy, off_centre, ring
+from bounce_env.report.stability.cases.drops import CORNER, LAST_HOPS, NEAR, G, R, rest_time
 from bounce_env.scene import Arc, Ball, Bumper, Element, Scene, Wall
-from tests.stability.stability_case import Case, between, going, last_time, resting
-from tests.stability.standing_curves import DOWN, TURN, energy, off_centre, ring
-from tests.stability.standing_drops import CORNER, LAST_HOPS, NEAR, G, R, rest_time
 
 REBOUND = 0.01  # times sqrt(press * size) [m/s]: the speed of the smallest hop on a curve
 

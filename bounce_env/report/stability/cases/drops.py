@@ -1,11 +1,12 @@
 """Drops in every direction, slopes, and accumulating bounces. G is gravity, R the disc's radius."""
 
 import math
+from typing import Any
 
 import mpmath
 
+from bounce_env.report.stability.case import ULP, Case, at, between, count, going, of_row, resting, when
 from bounce_env.scene import Ball, Scene, Wall
-from tests.stability.stability_case import ULP, Case, at, between, count, going, of_row, resting, when
 
 G, R = 9.81, 0.125
 SIZE = 4.0  # [m] extent of the scenes here, rounded up to a power of two
@@ -17,11 +18,11 @@ LAST_HOPS = 1.01 * math.sqrt(8 * TOUCH / G)  # [s] duration of the highest hop t
 C30, S30 = math.sqrt(0.75), 0.5
 
 
-def floor(y: float = 0.0, **surface: float) -> Wall:
+def floor(y: float = 0.0, **surface: Any) -> Wall:
     return Wall((-3, y), (3, y), name="floor", **surface)
 
 
-def slope(**surface: float) -> Wall:
+def slope(**surface: Any) -> Wall:
     """Down to the right by 30 degrees, 7 m long, through the origin; turned exactly as its ends are rounded."""
     return Wall((-3.5 * C30, 3.5 * S30), (3.5 * C30, -3.5 * S30), name="slope", **surface)
 

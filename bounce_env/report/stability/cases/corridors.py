@@ -1,8 +1,8 @@
 """Between two walls, and along one that does not press."""
 
+from bounce_env.report.stability.case import ULP, Case, at, count, going
+from bounce_env.report.stability.cases.drops import NEAR, G, R, floor
 from bounce_env.scene import Ball, Bumper, Scene, Wall
-from tests.stability.stability_case import ULP, Case, at, count, going
-from tests.stability.standing_drops import NEAR, G, R, floor
 
 
 def _corridor(name: str, gap: float, vy: float, hits: int) -> Case:

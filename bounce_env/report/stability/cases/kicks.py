@@ -1,9 +1,9 @@
 """Kicks with threshold and cooldown."""
 
+from bounce_env.report.stability.case import ULP, Case, at, of_row, when
+from bounce_env.report.stability.cases.commands import FREE
+from bounce_env.report.stability.cases.drops import NEAR, R, floor
 from bounce_env.scene import Ball, Scene, Wall
-from tests.stability.stability_case import ULP, Case, at, of_row, when
-from tests.stability.standing_commands import FREE
-from tests.stability.standing_drops import NEAR, R, floor
 
 
 def _kick(name: str, v: float, v1: float, why: str, **surface: float) -> Case:

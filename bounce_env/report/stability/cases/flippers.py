@@ -2,8 +2,8 @@
 
 import math
 
+from bounce_env.report.stability.case import Case, at, between, count, going, last_time, of_row, resting, when
 from bounce_env.scene import Ball, Flipper, Scene, Wall
-from tests.stability.stability_case import Case, at, between, count, going, last_time, of_row, resting, when
 
 R = 0.0135  # the ball's radius [m]
 ON_TOP = R + 0.01  # height of a ball on a level flipper

@@ -3,8 +3,8 @@
 import math
 
 from bounce_env.engine.world import World
+from bounce_env.report.stability.case import Case, Point, play
 from bounce_env.scene import Arc, Bumper, Element, Flipper, Paddle, Scene, Wall
-from tests.stability.stability_case import Case, Point, play
 
 
 def distance(element: Element, core: list[float] | None, p: Point) -> float:

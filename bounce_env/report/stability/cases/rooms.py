@@ -2,15 +2,16 @@
 
 import math
 import random
+from typing import Any
 
+from bounce_env.report.stability.case import ULP, Case, Expect, Point, Run, at, between, going, resting, speed
+from bounce_env.report.stability.cases.drops import NEAR, R
 from bounce_env.scene import Arc, Ball, Bumper, Element, Scene, Wall
-from tests.stability.stability_case import ULP, Case, Expect, Point, Run, at, between, going, resting, speed
-from tests.stability.standing_drops import NEAR, R
 
 FREE = (0.0, 0.0)
 
 
-def polygon(corners: list[Point], **surface: float) -> tuple[Wall, ...]:
+def polygon(corners: list[Point], **surface: Any) -> tuple[Wall, ...]:
     pairs = zip(corners, [*corners[1:], corners[0]], strict=True)
     return tuple(Wall(p, q, name=f"w{k}", **surface) for k, (p, q) in enumerate(pairs))
 

@@ -1,17 +1,18 @@
 """V's and wedges in which a ball comes to rest, or out of which it comes again."""
 
 import math
+from typing import Any
 
+from bounce_env.report.stability.case import ULP, Case, Point, at, between, going, last_time, resting, speed, when
+from bounce_env.report.stability.cases.corners import HALF, left_out
+from bounce_env.report.stability.cases.drops import CORNER, NEAR, G, R, rest_time
 from bounce_env.scene import Ball, Scene, Wall
-from tests.stability.stability_case import ULP, Case, Point, at, between, going, last_time, resting, speed, when
-from tests.stability.standing_corners import HALF, left_out
-from tests.stability.standing_drops import CORNER, NEAR, G, R, rest_time
 
 # In a V: which of the two walls a ball at rest is in contact with is left open, and a contact that goes on has no row.
 SETTLES = "((left|right) (bounce|begin|end), )+(left|right) (bounce|begin)"
 
 
-def v_walls(left: float, right: float, length: float = 2.5, **surface: float) -> tuple[Wall, Wall]:
+def v_walls(left: float, right: float, length: float = 2.5, **surface: Any) -> tuple[Wall, Wall]:
     """Two walls up from the origin, `left` and `right` radians from the upright."""
     return (
         Wall((0, 0), (-length * math.sin(left), length * math.cos(left)), name="left", **surface),

@@ -3,9 +3,9 @@
 import math
 from itertools import pairwise
 
+from bounce_env.report.stability.case import ULP, Case, at, between, count, going, resting, when
+from bounce_env.report.stability.cases.drops import C30, NEAR, S30, G, R, floor
 from bounce_env.scene import Arc, Ball, Bumper, Scene, Sensor, Wall
-from tests.stability.stability_case import ULP, Case, at, between, count, going, resting, when
-from tests.stability.standing_drops import C30, NEAR, S30, G, R, floor
 
 HALF = math.sqrt(0.5)
 

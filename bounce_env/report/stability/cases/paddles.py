@@ -2,8 +2,8 @@
 
 import math
 
+from bounce_env.report.stability.case import ULP, Case, at, between, count, going, last_time, of_row, resting, when
 from bounce_env.scene import Ball, Bumper, Paddle, Scene, Wall
-from tests.stability.stability_case import ULP, Case, at, between, count, going, last_time, of_row, resting, when
 
 R = 0.125  # the ball's radius [m]
 NEAR = 1e-12

@@ -1,15 +1,16 @@
 """What a ball passes through: one-way walls and sensors."""
 
 import math
+from typing import Any
 
+from bounce_env.report.stability.case import ULP, Case, at, going, resting, when
+from bounce_env.report.stability.cases.drops import NEAR, G, R, floor, rest_time
 from bounce_env.scene import Ball, Scene, Sensor, Wall
-from tests.stability.stability_case import ULP, Case, at, going, resting, when
-from tests.stability.standing_drops import NEAR, G, R, floor, rest_time
 
 FREE = (0.0, 0.0)
 
 
-def gate(**surface: float) -> Wall:
+def gate(**surface: Any) -> Wall:
     """Bounces from above (its left), lets through from below."""
     return Wall((-3, 0), (3, 0), one_way=True, name="gate", **surface)
 

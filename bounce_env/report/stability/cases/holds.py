@@ -1,8 +1,8 @@
 """Tar, glue and rest_speed; ceilings: what holds a ball, what lets it slide, what lets it fall."""
 
+from bounce_env.report.stability.case import ULP, Case, at, going, of_row, resting, speed, when
+from bounce_env.report.stability.cases.drops import HIT, NEAR, G, R, floor, on_slope, slope
 from bounce_env.scene import Ball, Scene, Wall
-from tests.stability.stability_case import ULP, Case, at, going, of_row, resting, speed, when
-from tests.stability.standing_drops import HIT, NEAR, G, R, floor, on_slope, slope
 
 HOLDS = [
     Case(

@@ -2,9 +2,9 @@
 
 import math
 
+from bounce_env.report.stability.case import ULP, Case, at, going, resting, when
+from bounce_env.report.stability.cases.drops import NEAR, R, floor
 from bounce_env.scene import Ball, Field, Scene, Wall
-from tests.stability.stability_case import ULP, Case, at, going, resting, when
-from tests.stability.standing_drops import NEAR, R, floor
 
 
 def box(x0: float, y0: float, x1: float, y1: float, acceleration: tuple[float, float], name: str = "field") -> Field:

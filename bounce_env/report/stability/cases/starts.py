@@ -2,10 +2,10 @@
 
 import math
 
+from bounce_env.report.stability.case import ULP, Case, at, between, going, resting, when
+from bounce_env.report.stability.cases.drops import NEAR, TOUCH, G, R, floor
+from bounce_env.report.stability.cases.extremes import FREE
 from bounce_env.scene import Ball, Scene
-from tests.stability.stability_case import ULP, Case, at, between, going, resting, when
-from tests.stability.standing_drops import NEAR, TOUCH, G, R, floor
-from tests.stability.standing_extremes import FREE
 
 TINY = 5e-324  # the smallest number above 0
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from bounce_env.report.stability.case import Case, Point, Run, Step
 from bounce_env.scene import Arc, Bumper, Element, Field, Flipper, Paddle, Scene, Sensor, Wall
-from tests.stability.stability_case import Case, Point, Run, Step
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Image:
                 corners = np.sort([self.point(corner) for corner in element.reach], 0)
                 changes["reach"] = tuple(map(tuple, corners.tolist()))
         if isinstance(element, Bumper | Arc | Sensor) and element.center is not None:
-            changes |= {"center": self.point(element.center), "radius": element.radius * self.length}
+            changes |= {"center": self.point(element.center), "radius": (element.radius or 0.0) * self.length}
         if isinstance(element, Arc) and self.upside_down:
             changes |= {"start_angle": -element.end_angle, "end_angle": -element.start_angle}
         if isinstance(element, Field):
@@ -118,6 +118,19 @@ class Image:
         if self.upside_down:
             states[..., 1] *= -1.0
         return found | {"states": states}
+
+    def back_run(self, run: Run) -> Run:
+        """The same as a run of the case itself, to be judged by what it expects."""
+        if run.refusal:
+            return run
+        fields = self.back(run)
+        (x, y), (vx, vy) = fields["states"][-1].tolist()
+        ledger = run.ledger
+        if ledger is not None:
+            ledger = ledger.copy()
+            for name in ledger.dtype.names:
+                ledger[name] = fields[name]
+        return replace(run, ledger=ledger, position=(x, y), velocity=(vx, vy), time=run.time / self.time)
 
     def _back(self, factor: float, mirrored: bool = False) -> Callable[[Any], Any]:
         sign = -1.0 if mirrored and self.upside_down else 1.0

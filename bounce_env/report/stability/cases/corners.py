@@ -2,9 +2,9 @@
 
 import math
 
+from bounce_env.report.stability.case import ULP, Case, Point, at, count, going, last_time, of_row, resting, speed, when
+from bounce_env.report.stability.cases.drops import CORNER, NEAR, G, R, floor, rest_time
 from bounce_env.scene import Arc, Ball, Bumper, Scene, Wall
-from tests.stability.stability_case import ULP, Case, Point, at, count, going, last_time, of_row, resting, speed, when
-from tests.stability.standing_drops import CORNER, NEAR, G, R, floor, rest_time
 
 HALF = math.sqrt(0.5)
 

@@ -4,9 +4,9 @@ import math
 
 import mpmath
 
+from bounce_env.report.stability.case import ULP, Case, at, between, count, going, of_row, resting, speed, when
+from bounce_env.report.stability.cases.drops import NEAR, G, R, floor, rest_time
 from bounce_env.scene import Ball, Bumper, Scene, Wall
-from tests.stability.stability_case import ULP, Case, at, between, count, going, of_row, resting, speed, when
-from tests.stability.standing_drops import NEAR, G, R, floor, rest_time
 
 FREE = (0.0, 0.0)
 FAR = 1e8

@@ -69,7 +69,7 @@ class Run:
     """What a case did."""
 
     names: list[str]
-    ledger: np.ndarray | None = None
+    ledger: Any = None  # structured array, see World.advance
     position: Point = (math.nan, math.nan)
     velocity: Point = (math.nan, math.nan)
     time: float = math.nan
@@ -79,7 +79,7 @@ class Run:
 
     def tokens(self) -> list[str]:
         """The ledger's rows as "element kind"."""
-        rows = [] if self.ledger is None else self.ledger
+        rows: Any = [] if self.ledger is None else self.ledger
         return [f"{self.names[row['element']]} {KINDS[row['kind']]}" for row in rows]
 
     def text(self) -> str:
@@ -87,7 +87,6 @@ class Run:
 
     def row(self, token: str, n: int = 0) -> Any:
         """The n-th row (from the end if negative) spelled `token`; all fields NaN where there is none."""
-        assert self.ledger is not None
         found = self.ledger[[t == token for t in self.tokens()]]
         if -len(found) <= n < len(found):
             return found[n]

@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import mpmath
 
+from bounce_env.report.stability.case import ULP, Case, Expect, Run, at, between, count, going, of_row, speed, when
+from bounce_env.report.stability.cases.drops import NEAR, G, R, floor
 from bounce_env.scene import Arc, Ball, Bumper, Scene, Wall
-from tests.stability.stability_case import ULP, Case, Expect, Run, at, between, count, going, of_row, speed, when
-from tests.stability.standing_drops import NEAR, G, R, floor
 
 TURN = 2 * math.pi
 # A ball that slides off a circle of 1 m from theta = 0.1 leaves it at cos(theta) = 2/3 cos(0.1), v^2 = g cos(theta).
@@ -93,7 +93,7 @@ def _gallery(r: float, vn: float) -> Case:
     )
 
 
-_ROUND = {
+_ROUND: dict[str, Bumper | Arc] = {
     "bumper": Bumper((0, 0), 1, name="round"),
     "ring": Arc((0, 0), 1, 0, TURN, name="round"),
     "ring with its seam in front": Arc((0, 0), 1, math.pi, 3 * math.pi, name="round"),

@@ -2,9 +2,9 @@
 
 import math
 
+from bounce_env.report.stability.case import ULP, Case, at, going, resting, speed, when
+from bounce_env.report.stability.cases.drops import C30, NEAR, S30, G, R, floor, on_slope, slope
 from bounce_env.scene import Ball, Bumper, Scene, Sensor, Wall
-from tests.stability.stability_case import ULP, Case, at, going, resting, speed, when
-from tests.stability.standing_drops import C30, NEAR, S30, G, R, floor, on_slope, slope
 
 FREE = (0.0, 0.0)
 FLOOR = Scene(gravity=(0, -2), ball=Ball(radius=R, b=0.5), elements=(floor(),))

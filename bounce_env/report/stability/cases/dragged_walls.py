@@ -1,10 +1,11 @@
 """Draggable walls: they carry, strike, drop and crush balls; their ends stop where they must."""
 
 import math
+from typing import Any
 
+from bounce_env.report.stability.case import ULP, Case, Expect, at, between, count, going, of_row, when
+from bounce_env.report.stability.cases.paddles import DOWN, FREE, NEAR, R, scene
 from bounce_env.scene import Ball, Wall
-from tests.stability.moving_paddles import DOWN, FREE, NEAR, R, scene
-from tests.stability.stability_case import ULP, Case, Expect, at, between, count, going, of_row, when
 
 POINT = Ball()
 Ends = tuple[tuple[float, float], tuple[float, float]]
@@ -15,11 +16,11 @@ def drag(start: tuple[float, float], end: tuple[float, float] | None = None) -> 
     return ("command", "w", (start, start if end is None else end))
 
 
-def floor(**more: object) -> Wall:
+def floor(**more: Any) -> Wall:
     return Wall((-2, 0), (2, 0), draggable=True, name="w", **more)
 
 
-def upright(**more: object) -> Wall:
+def upright(**more: Any) -> Wall:
     return Wall((0, -1), (0, 1), draggable=True, name="w", **more)
 
 

@@ -4,9 +4,9 @@ import math
 
 import mpmath
 
+from bounce_env.report.stability.case import ULP, Case, at, between, count, going, last_time, of_row, resting, when
+from bounce_env.report.stability.cases.drops import C30, LAST_HOPS, NEAR, REST, S30, G, R, floor, on_slope
 from bounce_env.scene import Ball, Field, Scene, Sensor, Wall
-from tests.stability.stability_case import ULP, Case, at, between, count, going, last_time, of_row, resting, when
-from tests.stability.standing_drops import C30, LAST_HOPS, NEAR, REST, S30, G, R, floor, on_slope
 
 DROP = Scene(gravity=(0, -G), ball=Ball(radius=R, b=0.5), elements=(floor(),))
 

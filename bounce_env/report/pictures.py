@@ -8,6 +8,7 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
 
 from bounce_env.report.model import ErrorRow, FeatureRow, SpeedRow
 
@@ -109,6 +110,10 @@ def features_picture(rows: Sequence[FeatureRow]) -> bytes:
     axes.set_yticks(range(len(kept)), [row.scene for row in reversed(kept)])
     axes.set_ylim(-0.6, len(kept) - 0.1)
     axes.set_xscale("log")
+    left, right = axes.get_xlim()
+    axes.set_xlim(left * (left / right) ** 0.08, right)  # room for the first label
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.set_xlabel("CPU time for a bounce, its flight included [ns]")
     return _png(figure)
 

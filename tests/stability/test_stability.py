@@ -1,6 +1,6 @@
 """The stability suite: every case is right, and nothing about it depends on what must not matter.
 
-A case fails by name; `python -m tests.stability.table FILE` writes all outcomes, with their errors, to a file. The
+A case fails by name; `python -m bounce_env report stability` shows outcomes, with their errors. The
 cases share two kernels, one for discs and one for points: those that have every feature of standing scenes.
 """
 

@@ -13,11 +13,14 @@ import numpy as np
 
 from bounce_env.engine import WorldBatch
 from bounce_env.engine.placement import part_cores_at_start, place_clear
-from bounce_env.report.model import FeatureRow
+from bounce_env.report.model import FeatureCostRow, FeatureRow
 from bounce_env.scene import ALL_FEATURES, Ball, Feature, Scene, load_scene
 
 GENERAL = ALL_FEATURES - {Feature.SEVERAL_BALLS}
 """All features of one ball: on these every scene of discs shares one kernel."""
+
+BASE = "elastic_box"
+"""The built-in scene with fewest features, on which each other one is forced."""
 
 WORLDS = 256
 CALM = 2.0**-40
@@ -44,6 +47,15 @@ def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
         lean_bytes=sizes[0][1],
         general_bytes=sizes[1][1],
     )
+
+
+def measure_cost(feature: Feature, *, pieces: int) -> FeatureCostRow:
+    """Measure what a feature costs a scene that does not need it, forced on."""
+    scene = load_scene(BASE)
+    (lean_step, lean_bounce), (step, bounce) = (_costs(scene, frozenset(f), pieces) for f in ((), (feature,)))
+    assert lean_bounce is not None
+    assert bounce is not None
+    return FeatureCostRow(feature.value, BASE, step, lean_step, bounce, lean_bounce)
 
 
 def _costs(scene: Scene, features: frozenset[Feature], pieces: int) -> tuple[float, float | None]:

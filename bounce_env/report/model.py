@@ -88,6 +88,21 @@ class FeatureRow:
 
 
 @dataclass(frozen=True)
+class FeatureCostRow:
+    """What one feature costs a scene that does not need it: `scene` with it forced on, against `scene` without.
+
+    step, bounce: ns of CPU, as in a FeatureRow; `lean_step` and `lean_bounce` without it.
+    """
+
+    feature: str
+    scene: str
+    step: float
+    lean_step: float
+    bounce: float
+    lean_bounce: float
+
+
+@dataclass(frozen=True)
 class SpeedRow:
     """How fast something steps: `rate` a second on one core, of so many `worlds`, median and quartiles over rounds."""
 
@@ -125,13 +140,14 @@ class StabilityRow:
     tutorial: str
 
 
-Row = ErrorRow | LongRow | StabilityRow | FeatureRow | SpeedRow
+Row = ErrorRow | LongRow | StabilityRow | FeatureRow | FeatureCostRow | SpeedRow
 
 PARTS: dict[str, type[Row]] = {
     "errors": ErrorRow,
     "long": LongRow,
     "stability": StabilityRow,
     "features": FeatureRow,
+    "costs": FeatureCostRow,
     "speed": SpeedRow,
 }
 """The parts of a report by their names in `report.json`."""
@@ -167,6 +183,11 @@ class Report:
     def features(self) -> list[FeatureRow]:
         """Rows of what features cost."""
         return self.rows["features"]
+
+    @property
+    def costs(self) -> list[FeatureCostRow]:
+        """Rows of what one feature costs."""
+        return self.rows["costs"]
 
     @property
     def speed(self) -> list[SpeedRow]:

@@ -15,7 +15,7 @@ from bounce_env.engine.compile.cache import PACKAGE, sources_hash
 from bounce_env.extras import version
 from bounce_env.files import replacing
 from bounce_env.report.errors import Plan, jobs
-from bounce_env.report.features import GENERAL, measure_features
+from bounce_env.report.features import BASE, GENERAL, measure_cost, measure_features
 from bounce_env.report.methods import all_methods
 from bounce_env.report.methods.base import Method
 from bounce_env.report.model import Report, Row, from_json, part_of, to_json
@@ -24,7 +24,7 @@ from bounce_env.report.speed import speed_jobs
 from bounce_env.report.stability.cases import CASES
 from bounce_env.report.stability.measure import measure_case
 from bounce_env.report.stability.mechanisms import MECHANISMS, tried_cases
-from bounce_env.scene import builtin_scenes
+from bounce_env.scene import ALL_FEATURES, builtin_scenes, load_scene
 
 PARTS = ("error", "stability", "features", "speed")
 """What `report` can be asked for, besides all."""
@@ -99,6 +99,10 @@ def _feature_jobs(options: Options) -> list[Job]:
         Job("features", f"features {name}", partial(measure_features, name, pieces=pieces, compiled=not options.quick))
         for name in names
         if not options.methods and (not options.scenes or name in options.scenes)
+    ] + [
+        Job("features", f"cost of {feature}", partial(measure_cost, feature, pieces=pieces))
+        for feature in sorted(ALL_FEATURES - load_scene(BASE).features)
+        if not (options.quick or options.methods or options.scenes)  # each has a kernel of its own to be compiled
     ]
 
 

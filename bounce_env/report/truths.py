@@ -17,6 +17,10 @@ from bounce_env.report.reference.pendulum import pendulum_flight
 from bounce_env.scene import Scene, Wall
 
 DIGITS = 50
+MORE_DIGITS = 120
+LONG = 600
+"""From so many frames on a chaotic problem needs more digits: each bounce costs up to one."""
+
 COMPARED = 8
 """How many times places are compared, evenly spaced."""
 
@@ -85,13 +89,14 @@ def _leg(time: Num, numbers: Sequence[Num], element: int) -> _Leg:
 
 
 def compared_frames(last: int) -> npt.NDArray[np.int64]:
-    """Return the frames at which places are compared, up to and including `last`."""
-    return np.unique(np.linspace(0, last, COMPARED + 1).astype(np.int64)[1:])
+    """Return the frames at which places are compared, up to and including `last`; fewer where there are not so many."""
+    frames = np.unique(np.linspace(0, last, COMPARED + 1).astype(np.int64))
+    return frames[frames > 0]
 
 
 def by_flights(question: Question, start: Start) -> Truth:
     """Solve for what stands: polynomials at 50 digits, up to the first soft hit."""
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(DIGITS if question.frames <= LONG else MORE_DIGITS):
         here, end = _flight_legs(question, start, mpf(0))
         there, _ = _flight_legs(question, start, _DISPLACED)
         return _truth(question, here, there, compared_frames(int(end * _FRAMES)))
@@ -148,13 +153,13 @@ def of_zeno(question: Question, start: Start) -> Truth:
         assert isinstance(wall, Wall)
         dx, dy = (mpf(b) - mpf(a) for a, b in zip(wall.start, wall.end, strict=True))
         length = mpmath.hypot(dx, dy)
-        ux, uy = dx / length, dy / length
-        nx, ny = -uy, ux
-        if (start.position[0] - wall.start[0]) * nx + (start.position[1] - wall.start[1]) * ny < 0:
-            nx, ny = -nx, -ny
+        u = dx / length, dy / length
+        n = -u[1], u[0]
+        if (start.position[0] - wall.start[0]) * n[0] + (start.position[1] - wall.start[1]) * n[1] < 0:
+            n = -n[0], -n[1]
         frames = compared_frames(question.frames)
-        places = [_zeno_place(question, start, (ux, uy), (nx, ny), mpf(f) / _FRAMES) for f in frames.tolist()]
-        return Truth(frames, np.array(places), np.ones(len(frames)), None, 2.0 * abs(scene.gravity[1]))
+        places = [_zeno_place(question, start, u, n, mpf(f) / _FRAMES) for f in frames.tolist()]
+        return Truth(frames, np.array(places), np.ones(len(frames)), None, _top_speed_of_zeno(question, start, u, n))
 
 
 def _zeno_place(
@@ -187,6 +192,18 @@ def _zeno_place(
     return float(x), float(y)
 
 
+def _top_speed_of_zeno(question: Question, start: Start, u: Pair, n: Pair) -> float:
+    """Return the speed at the first hit, or at the end of the slide [m/s]."""
+    wall = question.scene.elements[0]
+    assert isinstance(wall, Wall)
+    height = sum((start.position[k] - wall.start[k]) * n[k] for k in (0, 1)) - question.scene.ball.radius
+    along, rise = (sum(start.velocity[k] * d[k] for k in (0, 1)) for d in (u, n))
+    pull, press = (sum(question.scene.gravity[k] * d[k] for k in (0, 1)) for d in (u, n))
+    hit = mpmath.sqrt(rise * rise - 2 * press * height)
+    at_hit = along + pull * (rise + hit) / -press
+    return float(max(mpmath.hypot(at_hit, hit), abs(along + pull * question.frames / _FRAMES)))
+
+
 def of_bowl(question: Question, start: Start) -> Truth:
     """Solve a slide that never ends."""
     return _of_slide(question, start, None)
@@ -204,4 +221,5 @@ def _of_slide(question: Question, start: Start, share: float | None) -> Truth:
     last = question.frames if share is None else min(question.frames, int(share * end * _FRAMES))
     frames = compared_frames(last)
     places = np.array([place(mpf(f) / _FRAMES) for f in frames.tolist()])
-    return Truth(frames, places, np.ones(len(frames)), None, max(abs(speed), float(np.sqrt(4.0 * pull * radius))))
+    at_bottom = float(np.sqrt(speed * speed + 2.0 * pull * (y + radius)))
+    return Truth(frames, places, np.ones(len(frames)), None, at_bottom)

@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
-from bounce_env.report.methods.pymunk_space import CHORDS, chords
-from bounce_env.report.methods.solids import offset_at, timelines_of
+from bounce_env.report.methods.solids import CHORDS, chords, offset_at, timelines_of
 from bounce_env.report.problems import Problem
 from bounce_env.report.truths import Start
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, moves
@@ -19,8 +18,16 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # Python warns of SWIG's types while they are made; as an error that would crash it
     import Box2D
 
-FASTEST = 100.0
-"""Scaled speed [m/s]: Box2D moves nothing further than 2 m in a step, which at 1/60 s is 120 m/s."""
+LONGEST_WAY = 1.6
+"""Scaled way of the fastest ball in a step [m]: Box2D moves nothing further than 2 m."""
+
+FASTEST = 1600.0
+"""Scaled speed [m/s] beyond which a larger scale gains nothing: floats of 32 bits end."""
+
+
+def best_scale(top_speed: float, per_second: int) -> float:
+    """Return by how much lengths are multiplied: the more, the less the slop of 5 mm is."""
+    return min(LONGEST_WAY * per_second, FASTEST) / top_speed
 
 
 class Box2DScene:
@@ -41,6 +48,8 @@ class Box2DScene:
         self.touched: Counter[int] = Counter()  # an arc is many shapes
         self._last_kick: dict[int, float] = {}
         self._kicks: list[tuple[float, float, float]] = []
+        self.touching = 0
+        self.ended = False
         for index, element in enumerate(scene.elements):
             if not isinstance(element, Sensor):
                 self._add(index, element)
@@ -114,8 +123,10 @@ class Box2DScene:
                 self._last_kick[index] = now
                 self._kicks.append((nx, ny, e.kick * self.scale))
         self._give_kicks()
+        rebounds = bool(self.touching or self.begun or self.ended)
+        self.ended = False
         cap = self.scene.max_speed
-        if cap is not None:
+        if cap is not None and rebounds:  # a flight is not capped
             vx, vy = self.ball.linearVelocity
             speed = math.hypot(vx, vy)
             if speed > cap * self.scale:
@@ -135,10 +146,13 @@ class _Listener(Box2D.b2ContactListener):  # type: ignore[misc]
         fixture, nx, ny = self._surface(contact)
         vx, vy = self._scene.ball.linearVelocity
         approach = -(vx * nx + vy * ny) / self._scene.scale
+        self._scene.touching += 1
         self._scene.begun.append((fixture.userData, nx, ny, approach))
 
     def EndContact(self, contact: Any) -> None:
         """Forget the touch."""
+        self._scene.touching -= 1
+        self._scene.ended = True
         self._scene.touched[self._surface(contact)[0].userData] -= 1
 
     def PreSolve(self, contact: Any, old: Any) -> None:
@@ -176,7 +190,7 @@ class Box2DPlayer(Player):
     """Box2D on one problem."""
 
     def __init__(self, problem: Problem, per_second: int, top_speed: float) -> None:
-        self._scene, self._scale = problem.scene, FASTEST / top_speed
+        self._scene, self._scale = problem.scene, best_scale(top_speed, per_second)
         self._each, self._dt = per_second // FRAMES, 1.0 / per_second
         self._timelines = timelines_of(self._scene, problem.commands) if problem.commands else None
 
@@ -225,7 +239,8 @@ class Box2DMethod(Method):
     name, label = "box2d", f"Box2D {Box2D.__version__}"
     settings, quick = STEPS, QUICK_STEPS
     note = (
-        f"8 velocity and 3 position iterations, bullet, no skins; scaled so that the fastest ball has {FASTEST:g} m/s; "
+        "8 velocity and 3 position iterations, bullet, no skins; scaled so that the fastest ball goes "
+        f"{LONGEST_WAY} m in a step, at most {FASTEST:g} m/s; "
         f"arcs of {CHORDS} chords a circle"
     )
 

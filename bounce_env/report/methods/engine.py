@@ -33,7 +33,7 @@ class OneWorld(Player):
         _advance(self._world, self._commands, steps, partial(self._world.advance, max_events=UNLIMITED))
 
     def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
-        """Advance from frame to frame, with the ledger."""
+        """Advance in the same calls, with the ledger."""
         self.begin(start)
         struck: list[int] = []
         places: list[tuple[float, float]] = []
@@ -47,7 +47,9 @@ class OneWorld(Player):
             x, y = self._world.position[0].tolist()
             places.append((x, y))
 
-        _advance(self._world, self._commands, frames.tolist(), advance, look)
+        wanted = set(frames.tolist())
+        steps = range(1, max(wanted, default=0) + 1) if self._by_frame else frames.tolist()
+        _advance(self._world, self._commands, steps, advance, lambda frame: look() if frame in wanted else None)
         vx, vy = self._world.velocity[0].tolist()
         return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx, vy))
 
@@ -57,7 +59,7 @@ def _advance(
     commands: tuple[Command, ...],
     frames: Collection[int] | range,
     advance: Callable[[float], object],
-    look: Callable[[], None] | None = None,
+    look: Callable[[int], None] | None = None,
 ) -> None:
     """Advance to one frame after the other, with the commands on the way, and look at each."""
     now, waiting = 0, list(commands)
@@ -71,7 +73,7 @@ def _advance(
         advance((frame - now) / FRAMES)
         now = frame
         if look is not None:
-            look()
+            look(frame)
 
 
 class ManyWorlds(Player):
@@ -101,7 +103,7 @@ class ManyWorlds(Player):
             self._commands,
             frames.tolist(),
             self._batch.advance,
-            lambda: places.append(self._batch.position[-1, 0]),
+            lambda _: places.append(self._batch.position[-1, 0]),
         )
         return Trace(np.array(places).reshape(-1, 2), None)
 

@@ -10,13 +10,10 @@ import numpy.typing as npt
 import pymunk
 
 from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
-from bounce_env.report.methods.solids import offset_at, timelines_of
+from bounce_env.report.methods.solids import CHORDS, chords, offset_at, timelines_of
 from bounce_env.report.problems import Problem
 from bounce_env.report.truths import Start
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, moves
-
-CHORDS = 1440
-"""How many straight pieces a whole circle is made of: Chipmunk has no hollow one."""
 
 BALL, SURFACE = 1, 2
 
@@ -45,9 +42,8 @@ class PymunkScene:
         disc = pymunk.Circle(self.ball, scene.ball.radius)
         disc.elasticity, disc.collision_type = scene.ball.b, BALL
         self.space.add(self.ball, disc)
-        if scene.max_speed is not None:
-            self.ball.velocity_func = _capped(scene.max_speed)
-        self._heed_kicks_and_gates()
+        self._now = 0.0
+        self._heed_kicks_gates_and_cap()
 
     def _add(self, index: int, element: Any) -> None:
         if isinstance(element, Field):
@@ -79,37 +75,45 @@ class PymunkScene:
 
         self.space.on_collision(BALL, SURFACE, begin=begin, separate=separate)
 
-    def _heed_kicks_and_gates(self) -> None:
+    def step(self, dt: float) -> None:
+        """Take one step [s]."""
+        self._now += dt
+        self.space.step(dt)
+
+    def _heed_kicks_gates_and_cap(self) -> None:
         elements: tuple[Any, ...] = self.scene.elements
         gates = {shape for shape, i in self.element_of.items() if getattr(elements[i], "one_way", False)}
         kicks = {shape: elements[i] for shape, i in self.element_of.items() if elements[i].kick > 0.0}
+        cap = self.scene.max_speed
         last_kick: dict[int, float] = {}
-        approach = [0.0]
-        now = [0.0]
+        approach: dict[pymunk.Shape, float] = {}
 
         def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
             shape = arbiter.shapes[1]
             if shape in gates:
-                (x0, y0), (x1, y1) = shape.a, shape.b
-                x, y = self.ball.position
-                vx, vy = self.ball.velocity
-                left = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
-                closes = (x1 - x0) * vy - (y1 - y0) * vx
-                arbiter.process_collision = left > 0.0 and closes < 0.0
-            approach[0] = self.ball.velocity.dot(arbiter.normal)
+                arbiter.process_collision = self._comes_from_left(shape)
+            approach[shape] = self.ball.velocity.dot(arbiter.normal)
 
         def post_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
             shape = arbiter.shapes[1]
-            now[0] = space.current_time_step + now[0]
             element = kicks.get(shape)
-            if element is None or not arbiter.is_first_contact or approach[0] <= element.kick_threshold:
-                return
-            if now[0] - last_kick.get(self.element_of[shape], -math.inf) >= element.cooldown:
-                last_kick[self.element_of[shape]] = now[0]
-                self.ball.velocity -= element.kick * arbiter.normal
+            if element is not None and arbiter.is_first_contact and approach[shape] > element.kick_threshold:
+                index = self.element_of[shape]
+                if self._now - last_kick.get(index, -math.inf) >= element.cooldown:
+                    last_kick[index] = self._now
+                    self.ball.velocity -= element.kick * arbiter.normal
+            if cap is not None and self.ball.velocity.length > cap:
+                self.ball.velocity = self.ball.velocity.scale_to_length(cap)
 
-        if gates or kicks:
+        if gates or kicks or cap is not None:
             self.space.on_collision(BALL, SURFACE, pre_solve=pre_solve, post_solve=post_solve)
+
+    def _comes_from_left(self, gate: pymunk.Segment) -> bool:
+        (x0, y0), (x1, y1) = gate.a, gate.b
+        (x, y), (vx, vy) = self.ball.position, self.ball.velocity
+        left = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
+        closes = (x1 - x0) * vy - (y1 - y0) * vx
+        return bool(left > 0.0 and closes < 0.0)
 
 
 def _shapes(body: pymunk.Body, e: Any) -> list[pymunk.Shape]:
@@ -136,23 +140,6 @@ def _shapes(body: pymunk.Body, e: Any) -> list[pymunk.Shape]:
     raise TypeError(f"pymunk is not given a {type(e).__name__}")
 
 
-def chords(arc: Arc, whole: int) -> list[tuple[float, float]]:
-    """Return points on an arc, so many on a whole circle."""
-    count = max(2, math.ceil(whole * (arc.end_angle - arc.start_angle) / (2.0 * math.pi)) + 1)
-    angles = np.linspace(arc.start_angle, arc.end_angle, count)
-    x, y = arc.center
-    return [(x + arc.radius * math.cos(a), y + arc.radius * math.sin(a)) for a in angles.tolist()]
-
-
-def _capped(cap: float) -> Callable[[pymunk.Body, Any, float, float], None]:
-    def update(body: pymunk.Body, gravity: Any, damping: float, dt: float) -> None:
-        pymunk.Body.update_velocity(body, gravity, damping, dt)
-        if body.velocity.length > cap:
-            body.velocity = body.velocity.scale_to_length(cap)
-
-    return update
-
-
 class PymunkPlayer(Player):
     """pymunk on one problem."""
 
@@ -169,7 +156,7 @@ class PymunkPlayer(Player):
 
     def go(self, frames: int) -> None:
         """Step in a Python loop, as its users do."""
-        step, dt, steer = self._peer.space.step, self._dt, self._timelines is not None
+        step, dt, steer = self._peer.step, self._dt, self._timelines is not None
         for _ in range(frames * self._each):
             if steer:
                 self._steer()

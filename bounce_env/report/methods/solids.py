@@ -18,6 +18,9 @@ from bounce_env.scene import Arc, Bumper, Field, Flipper, Scene, Sensor, Wall
 Floats = npt.NDArray[np.float64]
 
 FRAMES = 60
+CHORDS = 1440
+"""How many straight pieces a whole circle is made of, for engines that have no hollow one."""
+
 CAPSULE, ARC = 0.0, 1.0
 FIXED, SLIDING, TURNING = 0.0, 1.0, 2.0
 
@@ -53,6 +56,14 @@ def _shape(e: Any, *, moving: bool) -> tuple[float, ...]:
             sense = 1.0 if e.active_angle > e.rest_angle else -1.0
             return (CAPSULE, *e.pivot, e.length, e.rest_angle, e.radius, TURNING, sense, 0.0)
     raise ValueError(f"the steppers of the report know no {type(e).__name__}")
+
+
+def chords(arc: Arc, whole: int) -> list[tuple[float, float]]:
+    """Return points on an arc, so many on a whole circle."""
+    count = max(2, math.ceil(whole * (arc.end_angle - arc.start_angle) / (2.0 * math.pi)) + 1)
+    angles = np.linspace(arc.start_angle, arc.end_angle, count)
+    x, y = arc.center
+    return [(x + arc.radius * math.cos(a), y + arc.radius * math.sin(a)) for a in angles.tolist()]
 
 
 def timelines_of(scene: Scene, commands: tuple[Command, ...]) -> Floats:

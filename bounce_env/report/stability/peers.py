@@ -11,9 +11,8 @@ from bounce_env.report.stability.case import Case, Point
 from bounce_env.scene import Field, Scene, Sensor, Wall
 
 PER_SECOND = 960
-"""Steps a second of all of them."""
+"""Steps a second of all of them, or a few more, so that a whole number of them makes the case's duration."""
 
-FASTEST_OF_BOX2D = 100.0
 RIGHT = 1e-9
 """A distance from the right place up to which it is called right, as a share of the scene's size."""
 
@@ -46,7 +45,7 @@ def outcome(peer: str, case: Case, right: Point | None, most_steps: int) -> str:
 
 
 def _size(case: Case) -> float:
-    """Return the size of the scene, or of the ball's way where that is larger [m]."""
+    """Return the longer side of what the scene occupies [m], of a ball where it is empty."""
     x0, y0, x1, y1 = case.scene.bounds
     return max(x1 - x0, y1 - y0, case.scene.ball.radius, 1e-300)
 
@@ -73,6 +72,12 @@ def _why_not(peer: str, case: Case) -> str:
     return ""
 
 
+def _steps(seconds: float) -> tuple[int, float]:
+    """Return into how many steps a duration is cut, and how long each is: at most 1 / PER_SECOND [s]."""
+    count = max(1, math.ceil(seconds * PER_SECOND))
+    return count, seconds / count
+
+
 def _pymunk(case: Case) -> Point:
     peer = import_module("bounce_env.report.methods.pymunk_space").PymunkScene(case.scene)
     peer.ball.position, peer.ball.velocity = case.position, case.velocity
@@ -80,8 +85,9 @@ def _pymunk(case: Case) -> Point:
         if isinstance(step, tuple):
             peer.ball.velocity += step[1]
         else:
-            for _ in range(round(step * PER_SECOND)):
-                peer.space.step(1.0 / PER_SECOND)
+            count, dt = _steps(step)
+            for _ in range(count):
+                peer.step(dt)
     x, y = peer.ball.position
     return float(x), float(y)
 
@@ -89,18 +95,20 @@ def _pymunk(case: Case) -> Point:
 def _box2d(case: Case) -> Point:
     (gx, gy), size = case.scene.gravity, _size(case)
     top_speed = math.hypot(*case.velocity) + math.sqrt(2.0 * math.hypot(gx, gy) * size) + 1e-3 * size
-    scale = FASTEST_OF_BOX2D / top_speed
-    peer = import_module("bounce_env.report.methods.box2d_world").Box2DScene(case.scene, scale)
+    module = import_module("bounce_env.report.methods.box2d_world")
+    scale = module.best_scale(top_speed, PER_SECOND)
+    peer = module.Box2DScene(case.scene, scale)
     peer.place(case.position, case.velocity)
-    now = 0
+    now = 0.0
     for step in case.script:
         if isinstance(step, tuple):
             vx, vy = peer.ball.linearVelocity
             peer.ball.linearVelocity = (vx + step[1][0] * scale, vy + step[1][1] * scale)
         else:
-            for _ in range(round(step * PER_SECOND)):
-                peer.step(1.0 / PER_SECOND, now / PER_SECOND)
-                now += 1
+            count, dt = _steps(step)
+            for _ in range(count):
+                peer.step(dt, now)
+                now += dt
     x, y = peer.ball.position
     return float(x) / scale, float(y) / scale
 
@@ -108,12 +116,13 @@ def _box2d(case: Case) -> Point:
 def _tutorial(case: Case) -> Point:
     scene: Scene = case.scene if case.scene.ball.radius == 0.0 else points_scene(case.scene, case.position)
     walls = np.array([(*w.start, *w.end, w.b, w.f) for w in scene.elements if isinstance(w, Wall)]).reshape(-1, 6)
-    numbers = np.array([1.0 / PER_SECOND, *scene.gravity, scene.ball.b, scene.ball.f])
     ball, sides = np.array([*case.position, *case.velocity]), np.ones(len(walls))
     set_sides(walls, *case.position, sides)
     (seconds,) = case.script
     assert not isinstance(seconds, tuple)
-    if ticks(walls, numbers, ball, sides, round(seconds * PER_SECOND), True, np.zeros(1)) < 0:
+    count, dt = _steps(seconds)
+    numbers = np.array([dt, *scene.gravity, scene.ball.b, scene.ball.f])
+    if ticks(walls, numbers, ball, sides, count, True, np.zeros(1)) < 0:
         return math.nan, math.nan
     x, y = ball[:2].tolist()
     return x, y

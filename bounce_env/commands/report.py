@@ -8,11 +8,11 @@ from tqdm import tqdm
 from bounce_env.commands.cli import FINE, PROBLEMS, Refused, check_range, say
 from bounce_env.files import replacing
 from bounce_env.report.methods import all_methods
-from bounce_env.report.model import Report, read_report, write_csv, write_report
-from bounce_env.report.page import page_of, pictures_of
+from bounce_env.report.model import ErrorRow, Report, read_report, write_csv, write_report
+from bounce_env.report.page import is_of_a_report, page_of, pictures_of
 from bounce_env.report.problems import PROBLEMS as PROBLEMS_OF_REPORT
-from bounce_env.report.run import PARTS, Job, Options, Store, run
-from bounce_env.report.winners import wins_of_peers, worse_errors
+from bounce_env.report.run import PARTS, Job, Options, Store, header_of, planned, run
+from bounce_env.report.winners import pairs_compared, wins_of_peers, worse_errors
 from bounce_env.scene import builtin_scenes
 from bounce_env.wording import counted, unknown_name
 
@@ -23,21 +23,25 @@ def make_report(
     """Measure, write and compare; returns PROBLEMS where an error has become worse than in `compare`."""
     check_range("seed", seed, 0)
     scenes, methods = _only(only)
-    older = _older(compare)
     parts = PARTS if part == "all" else (part,)
     options = Options(parts=parts, quick=quick, seed=seed, scenes=scenes, methods=methods)
+    older = None if compare is None else _older(compare, options)
+    jobs, used = planned(options)
+    if not jobs:
+        raise Refused(f"--only {only}: nothing of the part {part!r} is about it")
     try:
         output.mkdir(parents=True, exist_ok=True)
         store = Store(output / ".unfinished.jsonl", options, resume=resume)
     except OSError as error:
         raise Refused(f"--output {output}: cannot be written: {error}") from error
-    if resume:
-        say(f"{counted(len(store.rows), 'row')} of an interrupted run are taken over")
-    report = run(options, store, _progress)
+    if store.interrupted:
+        what = "are taken over" if resume else "are measured again; --resume would take them over"
+        say(f"{counted(store.interrupted, 'row')} of an interrupted run {what}")
+    report = run(jobs, header_of(options, used), store, _progress)
     _write(report, output)
     store.remove()
     _summarize(report, output)
-    return _compared(report, older)
+    return FINE if older is None else _compared(report, older)
 
 
 def _only(only: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -57,13 +61,15 @@ def _only(only: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(scenes), tuple(methods)
 
 
-def _older(compare: Path | None) -> Report | None:
-    if compare is None:
-        return None
+def _older(compare: Path, options: Options) -> Report:
     try:
-        return read_report(compare)
+        older = read_report(compare)
     except ValueError as error:
         raise Refused(f"--compare {error}") from error
+    for name, value in (("quick", options.quick), ("seed", options.seed)):
+        if older.header.get(name) != value:
+            raise Refused(f"--compare {compare}: {name} = {older.header.get(name)!r}: must be {value!r} as in this run")
+    return older
 
 
 def _progress(jobs: Collection[Job]) -> Iterable[Job]:
@@ -90,6 +96,10 @@ def _write(report: Report, output: Path) -> None:
     for part, rows in report.rows.items():
         if rows:
             write_csv(rows, output / f"{part}.csv")
+    written = {*pictures, *(f"{part}.csv" for part, rows in report.rows.items() if rows)}
+    for path in [*output.glob("*.png"), *output.glob("*.csv")]:
+        if path.name not in written and is_of_a_report(path.name):
+            path.unlink()  # of an older report, of which nothing else is left
     with replacing(output / "report.html") as unfinished:
         unfinished.write_text(page, encoding="utf-8")
     write_report(report, output / "report.json")
@@ -101,20 +111,23 @@ def _summarize(report: Report, output: Path) -> None:
     for win in wins:
         peer = f"{win.peer.method} at {win.peer.setting}"
         say(f"  {win.problem}: {peer} is faster and more accurate than {win.ours.method}")
-    if report.errors and not wins:
-        say("  no method is both faster and more accurate on any problem")
+    if pairs_compared(report.errors) and not wins:
+        say("  no other method is both faster and more accurate, beyond the spread, on any problem")
 
 
-def _compared(report: Report, older: Report | None) -> int:
-    if older is None:
-        return FINE
-    worse = worse_errors(report.errors, older.errors)
+def _compared(report: Report, older: Report) -> int:
+    compared, worse = worse_errors(report.errors, older.errors)
     for row, old in worse:
-        assert row.error is not None
-        assert old.error is not None
-        what = f"{row.problem} {row.method} {row.setting}: error {row.error.median:.2g}, was {old.error.median:.2g}"
-        order = f"wrong order {row.wrong_order}, was {old.wrong_order}; lost {row.lost}, was {old.lost}"
-        say(f"  worse: {what}; {order}")
+        say(f"  worse: {row.problem} {row.method} {row.setting}: {_in_words(row)}; was {_in_words(old)}")
+    if not compared:
+        say("  nothing to compare: the older report has no row of this engine that this one has")
+        return PROBLEMS
     if not worse:
-        say("  no error is worse than before")
+        say(f"  none of {counted(compared, 'row')} of this engine is worse than before")
     return PROBLEMS if worse else FINE
+
+
+def _in_words(row: ErrorRow) -> str:
+    if row.error is None:
+        return row.reason
+    return f"error {row.error.median:.2g} m, wrong order {row.wrong_order}, lost {row.lost}"

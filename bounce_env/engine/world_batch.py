@@ -166,7 +166,7 @@ class WorldBatch:
         self._check_started()
         m = commanded_part(self.scenes[0], name)
         _, part = self.scenes[0].parts[m]
-        if any(scene.parts[m : m + 1] != self.scenes[0].parts[m : m + 1] for scene in self.scenes):
+        if any([part for _, part in scene.parts[m : m + 1]] != [part] for scene in self.scenes):
             raise ValueError(f"command: {shown(name)} must be the same part in every scene of the batch")
         caps = [scene.max_speed for scene in self.scenes if scene.max_speed is not None]
         velocities = commanded_velocities(part, value, min(caps, default=None), (len(self),))
@@ -187,6 +187,7 @@ class WorldBatch:
     @property
     def time(self) -> Floats:
         """Seconds since reset, shape (worlds,)."""
+        self._check_started()
         return np.asarray(self._state.worlds["time_hi"].copy())
 
     @property
@@ -213,6 +214,7 @@ class WorldBatch:
     @property
     def counts(self) -> Counts:
         """How much has happened since reset: each of shape (worlds,)."""
+        self._check_started()
         worlds = self._state.worlds
         return Counts(
             worlds["events_before"] + worlds["events"], worlds["bounces"].copy(), worlds["speed_capped"].copy()

@@ -1,19 +1,23 @@
 """Part 1: error against run time, every method on every problem, and what becomes of energy and order in long runs."""
 
 import math
+import statistics
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from bounce_env.report.measure import cost_of, error_of, right_bounces, spread
-from bounce_env.report.methods.base import Method, Setting, Trace
+from bounce_env.report.methods.base import Method, Player, Setting, Trace
 from bounce_env.report.model import ErrorRow, LongRow
 from bounce_env.report.problems import Problem
 from bounce_env.report.truths import Start, Truth
 from bounce_env.scene import Scene
+
+Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,21 @@ def measure_errors(which: Problem, method: Method, setting: Setting, plan: Plan)
     if reason is not None:
         return ErrorRow(*where, reason=reason)
     starts, truths = solved(which, plan.starts if which.chaotic else min(plan.starts, REGULAR), plan.seed)
-    player = method.player(which, setting, max(truth.top_speed for truth in truths))
+    try:
+        player = method.player(which, setting, max(truth.top_speed for truth in truths))
+        return _measured(where, which, player, starts, truths, plan.shortest)
+    except Exception as error:  # of one method: the others go on, and its row says so
+        return ErrorRow(*where, reason=f"failed: {type(error).__name__}: {error}")
+
+
+def _measured(
+    where: tuple[str, str, str],
+    which: Problem,
+    player: Player,
+    starts: Sequence[Start],
+    truths: Sequence[Truth],
+    shortest: float,
+) -> ErrorRow:
     traces = [player.trace(start, truth.frames) for start, truth in zip(starts, truths, strict=True)]
     errors = [error_of(t, truth, chaotic=which.chaotic) for t, truth in zip(traces, truths, strict=True)]
     ordered = [(t.order, truth.order) for t, truth in zip(traces, truths, strict=True)]
@@ -59,30 +77,31 @@ def measure_errors(which: Problem, method: Method, setting: Setting, plan: Plan)
     return ErrorRow(
         *where,
         error=spread(errors),
-        cost=cost_of(player, starts, truths, plan.shortest),
+        cost=cost_of(player, starts, truths, shortest),
         wrong_order=sum(seen != right for seen, right in compared) / len(compared) if compared else None,
         missed=sum(max(0, len(right) - len(seen)) for seen, right in compared) if compared else None,
-        lost=sum(_is_lost(which.scene, t) for t in traces) / len(traces),
+        lost=sum(_is_lost(which.scene, t, truth) for t, truth in zip(traces, truths, strict=True)) / len(traces),
         starts=len(starts),
     )
 
 
-def _is_lost(scene: Scene, trace: Trace) -> bool:
-    """Return whether the ball has left the box around the scene, where walls close it, or has no place."""
+def _is_lost(scene: Scene, trace: Trace, truth: Truth) -> bool:
+    """Return whether the ball has no place, or is where it can only be by having passed through something.
+
+    That is: outside of the box around the scene, by more than its diameter, while it should be inside; or farther from
+    the right place than that box is large.
+    """
     if not np.isfinite(trace.places).all():
         return True
-    if not _is_closed(scene):
-        return False
     left, bottom, right, top = scene.bounds
-    x, y = trace.places.T
-    return bool((x < left).any() or (x > right).any() or (y < bottom).any() or (y > top).any())
+    margin = 2.0 * scene.ball.radius
 
+    def outside(places: Floats, by: float) -> Any:
+        x, y = places.T
+        return (x < left - by) | (x > right + by) | (y < bottom - by) | (y > top + by)
 
-def _is_closed(scene: Scene) -> bool:
-    elements: tuple[Any, ...] = scene.elements
-    return any(getattr(e, "closed", False) for e in elements) or {"floor", "right", "top", "left"} <= {
-        e.name for e in elements
-    }
+    far = np.hypot(*(trace.places - truth.places).T) > np.hypot(right - left, top - bottom)
+    return bool((far | (outside(trace.places, margin) & ~outside(truth.places, 0.0))).any())
 
 
 # ---- long runs
@@ -94,7 +113,7 @@ ORDERED = ("box", "bumper_field")
 """Problems in which an error grows until the order of bounces is wrong."""
 
 SLOWER = {"engine": 1, "engine_frames": 10, "tutorial_recheck": 10, "tutorial_once": 10, "moreau": 10, "scipy": 4000}
-"""Of a long run's bounces a method makes one in so many; those that are not named one in 1000: it would take hours."""
+"""By how much fewer bounces a slow method makes in a long run, which would take hours; 1000 where it is not named."""
 
 
 def measure_energy(which: Problem, method: Method, setting: Setting, plan: Plan) -> LongRow:
@@ -139,7 +158,8 @@ def measure_order(which: Problem, method: Method, setting: Setting, plan: Plan) 
         right_bounces(player.trace(start, truth.frames).order or (), truth.order or ())
         for start, truth in zip(starts, truths, strict=True)
     ]
-    return LongRow(*where, right_bounces=spread(counts).median, of=min(len(truth.order or ()) for truth in truths))
+    there_are = statistics.median(len(truth.order or ()) for truth in truths)
+    return LongRow(*where, right_bounces=spread(counts).median, of=int(there_are))
 
 
 Measure = Callable[[Problem, Method, Setting, Plan], ErrorRow | LongRow]

@@ -1,6 +1,7 @@
 """How errors and times are measured: one player, one start after the other."""
 
 import math
+import statistics
 import time
 from collections.abc import Iterable, Sequence
 
@@ -15,10 +16,10 @@ ENOUGH, LEAST_STARTS = 1.0, 3
 
 
 def spread(values: Iterable[float]) -> Spread:
-    """Return median and quartiles; each is one of the values, so that infinite ones do no harm."""
+    """Return median and quartiles. A quartile is one of the values, the outer one of two; what is NaN is infinite."""
     ordered = sorted(math.inf if math.isnan(v) else float(v) for v in values)
     at = (len(ordered) - 1) / 4.0
-    return Spread(ordered[round(2 * at)], ordered[round(at)], ordered[round(3 * at)])
+    return Spread(statistics.median(ordered), ordered[math.floor(at)], ordered[math.ceil(3 * at)])
 
 
 def cost_of(player: Player, starts: Sequence[Start], truths: Sequence[Truth], shortest: float) -> Spread:

@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import functools
 import io
 import json
 import math
@@ -10,7 +11,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pydantic import TypeAdapter, ValidationError
+
 from bounce_env.files import replacing
+from bounce_env.wording import shown
 
 SCHEMA = 1
 """Version of `report.json`; it grows by one when a reader of the last one would misread it."""
@@ -69,8 +73,8 @@ class LongRow:
 class FeatureRow:
     """A built-in scene on the kernel of its own features (lean), and on the one that has them all (general).
 
-    step: ns of CPU for a world's step that meets nothing, in a batch. bounce: ns of CPU for a bounce, flight and all;
-    None where balls do not bounce for long. compile, bytes: seconds of compiling and machine code of the kernel that
+    step: ns of CPU for a world's step in which nothing happens, in a batch. bounce: ns of CPU for a flight and its
+    bounce; None where balls do not bounce for long. compile, bytes: seconds of compiling and machine code of the kernel that
     advances a batch; None where that was not measured.
     """
 
@@ -218,19 +222,25 @@ def _spelled(value: Any) -> Any:
 
 def from_json(part: str, plain: Mapping[str, Any]) -> Row:
     """Return the row that `to_json` wrote; raises ValueError for what is none."""
+    if part not in PARTS or not isinstance(plain, Mapping):
+        raise ValueError(f"{shown(part)}: must be a row of one of {', '.join(PARTS)}")
     kind = PARTS[part]
     names = {f.name for f in dataclasses.fields(kind)}
     if set(plain) - names:
         raise ValueError(f"{part}: unknown fields {sorted(set(plain) - names)}, must be of {sorted(names)}")
-    return kind(**{name: _read(value) for name, value in plain.items()})
+    try:
+        row: Row = _reader(kind).validate_python(plain)
+    except ValidationError as error:
+        wrong = error.errors()[0]
+        where = ".".join(map(str, wrong["loc"]))
+        raise ValueError(f"{part}: {where} = {shown(wrong['input'])}: {wrong['msg']}") from error
+    return row
 
 
-def _read(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return Spread(**{name: float(item) for name, item in value.items()})
-    if isinstance(value, list):
-        return tuple(value)
-    return float(value) if value in ("inf", "-inf", "nan") else value
+@functools.cache
+def _reader(kind: Any) -> TypeAdapter[Row]:
+    reader: TypeAdapter[Row] = TypeAdapter(kind)
+    return reader
 
 
 def write_report(report: Report, path: Path) -> None:
@@ -245,7 +255,7 @@ def read_report(path: Path) -> Report:
     """Read a `report.json`; raises ValueError that says what of it is wrong."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise ValueError(f"{path}: cannot be read as a report: {error}") from error
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
         found = data.get("schema") if isinstance(data, dict) else None
@@ -255,8 +265,8 @@ def read_report(path: Path) -> Report:
         for part in PARTS:
             for plain in data.get(part, []):
                 report.add(from_json(part, plain))
-    except (TypeError, AttributeError) as error:
-        raise ValueError(f"{path}: {part}: {error}") from error
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{path}: {error}") from error
     return report
 
 

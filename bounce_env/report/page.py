@@ -7,10 +7,10 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from bounce_env.report.model import ErrorRow, Report, Spread
+from bounce_env.report.model import PARTS, ErrorRow, Report, Spread
 from bounce_env.report.pictures import STYLES, features_picture, speed_picture, work_precision
 from bounce_env.report.problems import PROBLEMS, Problem
-from bounce_env.report.winners import wins_of_peers
+from bounce_env.report.winners import pairs_compared, wins_of_peers
 
 
 def pictures_of(report: Report) -> dict[str, bytes]:
@@ -28,8 +28,13 @@ def pictures_of(report: Report) -> dict[str, bytes]:
     return pictures
 
 
+def is_of_a_report(name: str) -> bool:
+    """Return whether a report writes a picture or table of this name."""
+    return name in {"features.png", "speed.png", *(f"{part}.csv" for part in PARTS)} or name.startswith("error_")
+
+
 def _unit(problem: Problem) -> str:
-    return "m, over the growth of a small error" if problem.chaotic else "m"
+    return "m, divided by growth" if problem.chaotic else "m"
 
 
 def page_of(report: Report, pictures: Mapping[str, bytes]) -> str:
@@ -62,9 +67,19 @@ def page_of(report: Report, pictures: Mapping[str, bytes]) -> str:
         methods=report.header["methods"],
         problems=problems,
         wins=wins_of_peers(report.errors),
+        pairs=pairs_compared(report.errors),
+        command=_command(report.header),
         pictures={name: base64.b64encode(data).decode() for name, data in pictures.items()},
         any=any,
     )
+
+
+def _command(header: Mapping[str, Any]) -> str:
+    """Return the command that makes this report again."""
+    words = ["python -m bounce_env report", *(header["parts"] if len(header["parts"]) == 1 else ())]
+    words += ["--quick"] * header["quick"] + [f"--seed {header['seed']}"] * bool(header["seed"])
+    only = [*header["scenes"], *header["only_methods"]]
+    return " ".join([*words, *([f"--only {','.join(only)}"] if only else [])])
 
 
 def _alt(problem: Problem, rows: Sequence[ErrorRow]) -> str:

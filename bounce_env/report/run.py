@@ -1,6 +1,7 @@
 """The runner: one list of jobs for all parts, with progress, resumed where it was interrupted."""
 
 import datetime
+import hashlib
 import json
 import os
 import platform
@@ -11,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from bounce_env.engine.compile.cache import PACKAGE, sources_hash
+from bounce_env.engine.compile.cache import PACKAGE
 from bounce_env.extras import version
 from bounce_env.files import replacing
 from bounce_env.report.errors import Plan, jobs
@@ -141,32 +142,46 @@ def _processor() -> str:
         return platform.processor() or platform.machine()
 
 
+def _package_hash() -> str:
+    """Return a hash over all of the package's sources and scenes."""
+    digest = hashlib.sha256()
+    for path in sorted([*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.toml")]):
+        digest.update(path.relative_to(PACKAGE).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
 class Store:
     """Rows that are measured, kept in a file as they come, for a run that goes on after an interruption.
 
-    They are those of the same sources and options only. A line that was cut off is measured again.
+    They are those of the same sources, scenes and options only. A line that is damaged is measured again.
+    interrupted: rows that lie there of an interrupted run, whether they are taken over (`resume`) or not.
     """
 
     def __init__(self, path: Path, options: Options, *, resume: bool) -> None:
         self._path = path
-        self._key = [sources_hash(PACKAGE / "report"), repr(options)]
-        self.rows: dict[str, Row] = {}
-        if resume:
-            self._read()
+        self._key = [_package_hash(), repr(options)]
+        found = self._read()
+        self.interrupted = len(found)
+        self.rows: dict[str, Row] = found if resume else {}
         lines = [json.dumps(self._key), *(self._line(name, row) for name, row in self.rows.items())]
         with replacing(path) as unfinished:
             unfinished.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
-    def _read(self) -> None:
+    def _read(self) -> dict[str, Row]:
+        rows: dict[str, Row] = {}
         try:
             lines = self._path.read_text(encoding="utf-8").splitlines()
             if not lines or json.loads(lines[0]) != self._key:
-                return
-            for line in lines[1:]:
-                name, part, plain = json.loads(line)
-                self.rows[name] = from_json(part, plain)
+                return rows
         except (OSError, ValueError):
-            return
+            return rows
+        for line in lines[1:]:
+            try:
+                name, part, plain = json.loads(line)
+                rows[str(name)] = from_json(part, plain)
+            except (TypeError, ValueError):
+                continue
+        return rows
 
     def keep(self, name: str, row: Row) -> None:
         """Append a row."""
@@ -183,12 +198,13 @@ class Store:
         self._path.unlink(missing_ok=True)
 
 
-def run(options: Options, store: Store, progress: Callable[[Collection[Job]], Iterable[Job]]) -> Report:
+def run(
+    todo: Sequence[Job], header: dict[str, Any], store: Store, progress: Callable[[Collection[Job]], Iterable[Job]]
+) -> Report:
     """Measure all that is not in the store yet, and return the report. progress: shows the jobs as they are done."""
-    planned_jobs, methods = planned(options)
-    report = Report(header_of(options, methods))
-    for job in progress([job for job in planned_jobs if job.name not in store.rows]):
+    report = Report(header)
+    for job in progress([job for job in todo if job.name not in store.rows]):
         store.keep(job.name, job.measure())
-    for job in planned_jobs:
+    for job in todo:
         report.add(store.rows[job.name])
     return report

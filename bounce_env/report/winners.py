@@ -41,21 +41,24 @@ def _beats(peer: ErrorRow, own: ErrorRow) -> bool:
     return peer.cost.high < own.cost.low and peer.error.high < own.error.low
 
 
+def pairs_compared(rows: Iterable[ErrorRow]) -> int:
+    """Return in how many pairs of an opponent and one of our lines a win would have been seen."""
+    measured = [row for row in rows if row.error is not None]
+    ours = [row.problem for row in measured if row.method in OURS]
+    return sum(ours.count(row.problem) for row in measured if row.method not in OURS)
+
+
 def worse_errors(
     now: Iterable[ErrorRow], before: Iterable[ErrorRow], factor: float = 4.0
-) -> list[tuple[ErrorRow, ErrorRow]]:
-    """Return the rows of this engine that are worse than in an older report, with those of that.
+) -> tuple[int, list[tuple[ErrorRow, ErrorRow]]]:
+    """Return how many rows of this engine are in both reports, and those that are worse, with the older ones.
 
-    Worse: the median error is more than `factor` times the older one and more than 1e-15 m above it, or a larger share
-    of starts has a wrong order or is lost.
+    Worse: the median error is more than `factor` times the older one and more than 1e-15 m above it, a larger share of
+    starts has a wrong order or is lost, or there is no number any more.
     """
-    older = {(row.problem, row.method, row.setting): row for row in before if row.method in OURS}
-    found = []
-    for row in now:
-        old = older.get((row.problem, row.method, row.setting))
-        if old is not None and row.error is not None and old.error is not None and _is_worse(row, old, factor):
-            found.append((row, old))
-    return found
+    older = {(row.problem, row.method, row.setting): row for row in before if row.method in OURS and row.error}
+    pairs = [(row, older[key]) for row in now if (key := (row.problem, row.method, row.setting)) in older]
+    return len(pairs), [(row, old) for row, old in pairs if row.error is None or _is_worse(row, old, factor)]
 
 
 def _is_worse(row: ErrorRow, old: ErrorRow, factor: float) -> bool:

@@ -134,7 +134,7 @@ def test_a_second_run_has_the_same_errors_to_the_bit(folder: Path, again, capsys
     for row in again.errors:
         old = first[row.problem, row.method, row.setting]
         assert replace(row, cost=None) == replace(old, cost=None)
-    assert "no error is worse than before" in capsys.readouterr().out
+    assert "none of 2 rows of this engine is worse than before" in capsys.readouterr().out
 
 
 def test_compare_finds_what_has_become_worse(folder: Path, tmp_path: Path, capsys):
@@ -172,18 +172,32 @@ def test_a_run_that_was_interrupted_goes_on(tmp_path: Path, monkeypatch, capsys)
 
 
 def test_another_run_takes_nothing_over(tmp_path: Path):
-    store = Store(tmp_path / "rows", Options(quick=True), resume=False)
-    store.keep("a", ErrorRow("box", "engine", "exact"))
-    assert Store(tmp_path / "rows", Options(quick=True), resume=True).rows.keys() == {"a"}
-    (tmp_path / "rows").write_text((tmp_path / "rows").read_text() + '["b", "err')  # cut off
-    assert Store(tmp_path / "rows", Options(quick=True), resume=True).rows.keys() == {"a"}
-    assert not Store(tmp_path / "rows", Options(quick=False), resume=True).rows
+    path = tmp_path / "rows"
+    store = Store(path, Options(quick=True), resume=False)
+    for name in "abc":
+        store.keep(name, ErrorRow("box", "engine", name))
+    lines = path.read_text().splitlines()
+    damaged = [
+        *lines[:2],
+        "5",
+        '["d", "nope", {}]',
+        '["e", "errors", 5]',
+        '["f", "errors", {}]',
+        *lines[3:],
+        '["g", "err',
+    ]
+    path.write_text("\n".join(damaged))
+    assert Store(path, Options(quick=True), resume=True).rows.keys() == {"a", "c"}
+    assert not Store(path, Options(quick=False), resume=True).rows
+    store.keep("a", ErrorRow("box", "engine", "a"))
+    assert Store(path, Options(quick=False), resume=True).interrupted == 0
 
 
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         (["--only", "boxx"], "--only boxx: unknown scene or method (did you mean 'box'?)"),
+        (["stability", "--only", "box"], "--only box: nothing of the part 'stability' is about it"),
         (["--seed", "-1"], "--seed -1: must be >= 0"),
         (["--compare", "absent.json"], "--compare absent.json: cannot be read as a report"),
         (["-o", "/dev/null/report"], "--output /dev/null/report: cannot be written"),
@@ -194,13 +208,39 @@ def test_bad_usage_is_refused(words: list[str], message: str, capsys):
     assert message in capsys.readouterr().err
 
 
-def test_a_file_that_is_no_report_is_refused(tmp_path: Path, capsys):
-    (tmp_path / "old.json").write_text(json.dumps({"schema": 99}))
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('{"schema": 99}', "schema = 99: must be 1"),
+        ("[" * 100_000, "cannot be read as a report"),
+        ('{"schema": 1, "errors": [{"problem": "box", "colour": "red"}]}', "errors: unknown fields ['colour']"),
+        ('{"schema": 1, "errors": [{"problem": "box", "method": "a", "setting": "b", "error": 1.0}]}', "error = 1.0: "),
+        ('{"schema": 1, "errors": [{"problem": "box"}]}', "errors: method = "),
+        ('{"schema": 1, "errors": [5]}', "must be a row of one of errors, "),
+        ('{"schema": 1, "header": {"quick": true, "seed": 0}}', "quick = True: must be False as in this run"),
+    ],
+)
+def test_a_file_that_is_no_report_is_refused(text: str, message: str, tmp_path: Path, capsys):
+    (tmp_path / "old.json").write_text(text)
     assert main(["report", "--compare", str(tmp_path / "old.json")]) == 2
-    assert "schema = 99: must be 1" in capsys.readouterr().err
-    (tmp_path / "old.json").write_text(json.dumps({"schema": 1, "errors": [{"problem": "box", "colour": "red"}]}))
-    assert main(["report", "--compare", str(tmp_path / "old.json")]) == 2
-    assert "unknown fields ['colour']" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert message in error
+    assert "old.json" in error
+
+
+def test_a_comparison_with_nothing_is_a_problem(tmp_path: Path, capsys):
+    (tmp_path / "old.json").write_text('{"schema": 1, "header": {"quick": true, "seed": 0}}')
+    words = ["report", "error", "--quick", "--only", "zeno_drop,tutorial_recheck", "-o", str(tmp_path / "now")]
+    assert main([*words, "--compare", str(tmp_path / "old.json")]) == 1
+    assert "nothing to compare" in capsys.readouterr().out
+
+
+def test_what_is_left_of_an_older_report_goes(tmp_path: Path):
+    for name in ("speed.png", "speed.csv", "error_box.png", "my.png"):
+        (tmp_path / name).write_text("old")
+    assert main(["report", "error", "--quick", "--only", "zeno_drop,tutorial_recheck", "-o", str(tmp_path)]) == 0
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {"error_zeno_drop.png", "errors.csv", "my.png", "report.html", "report.json"}
 
 
 def test_the_full_report_has_the_scenes_methods_and_settings_that_it_promises():

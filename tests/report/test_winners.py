@@ -7,7 +7,7 @@ import pytest
 
 from bounce_env.report.measure import right_bounces, spread
 from bounce_env.report.model import ErrorRow, Spread
-from bounce_env.report.winners import wins_of_peers, worse_errors
+from bounce_env.report.winners import pairs_compared, wins_of_peers, worse_errors
 
 pytestmark = pytest.mark.fast
 
@@ -45,16 +45,27 @@ def test_it_does_not_win_otherwise(other: ErrorRow):
 def test_worse_errors_are_found():
     worse = replace(OWN, error=Spread(1e-13, 1e-13, 1e-13))
     disordered, lost = replace(OWN, wrong_order=0.1), replace(OWN, lost=0.05)
+    failed = replace(OWN, error=None, cost=None, reason="failed: ValueError")
+    for row in (worse, disordered, lost, failed):
+        assert worse_errors([row], [OWN]) == (1, [(row, OWN)])
     for row in (worse, disordered, lost):
-        assert worse_errors([row], [OWN]) == [(row, OWN)]
-        assert worse_errors([OWN], [row]) == []
-    assert worse_errors([OWN], [OWN]) == []
-    assert worse_errors([replace(OWN, error=Spread(1.5e-15, 0.0, 0.0))], [OWN]) == []
-    assert worse_errors([peer(1.0, 1.0)], [peer(0.1, 1.0)]) == []  # an opponent's own affair
+        assert worse_errors([OWN], [row]) == (1, [])
+    assert worse_errors([OWN], [OWN]) == (1, [])
+    assert worse_errors([replace(OWN, error=Spread(1.5e-15, 0.0, 0.0))], [OWN]) == (1, [])
+    assert worse_errors([peer(1.0, 1.0)], [peer(0.1, 1.0)]) == (0, [])  # an opponent's own affair
+    assert worse_errors([OWN], [failed]) == (0, [])
+
+
+def test_pairs_are_counted():
+    assert (
+        pairs_compared([OWN, replace(OWN, method="engine_batch"), peer(1.0, 1.0), peer(1.0, 1.0, problem="bowl")]) == 2
+    )
+    assert pairs_compared([OWN]) == pairs_compared([peer(1.0, 1.0)]) == 0
 
 
 def test_a_spread_has_quartiles_and_counts_runs_without_end():
     assert spread([3.0, 1.0, 2.0, 5.0, 4.0]) == Spread(3.0, 2.0, 4.0)
+    assert spread([1.0, 2.0, 3.0, 4.0]) == Spread(2.5, 1.0, 4.0)
     assert spread([1.0, math.nan, math.inf]) == Spread(math.inf, 1.0, math.inf)
 
 

@@ -1,4 +1,4 @@
-"""An ODE solver with events, as its documentation shows for a bouncing ball; and one that is told the contact."""
+"""An ODE solver with an event for each surface, started anew after each bounce; and one that is told the contact."""
 
 import math
 from collections.abc import Callable

@@ -18,11 +18,15 @@ def measure_case(mechanism: Mechanism, case: Case, image: Image, words: str, mos
     most_steps: what other engines cannot play in so many is not run.
     """
     played = image.case(case)
-    before = time.process_time()
-    run = play(played)
-    cost = time.process_time() - before
-    worst = max(judge(case, image.back_run(run)), key=_badness)
-    right = _right_place(played, run, as_it_is=image == Image())
+    try:
+        run = play(played)
+        before = time.process_time()
+        play(played)
+        cost = time.process_time() - before
+        worst = max(judge(case, image.back_run(run)), key=_badness)
+        right = _right_place(played, run, as_it_is=image == Image())
+    except Exception as error:  # of a broken engine: a red row, and the others go on
+        worst, cost, right = Outcome(case.name, "run", "", f"{type(error).__name__}: {error}", 1.0, 0.0), math.nan, None
     peers = {peer: outcome(peer, played, right, most_steps) for peer in PEERS}
     return StabilityRow(
         mechanism=mechanism.name,

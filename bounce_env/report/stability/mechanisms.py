@@ -37,7 +37,7 @@ MECHANISMS = (
         "stiff",
         "restitution near 0",
         "Nearly all is lost at the first hit; what is left must not be lost at once.",
-        r"drop e=0\.[15] r=.*|b = 0 from 10 m|tar|glue",
+        r"drop e=0\.[15] r=.*|b = 0 from 10 m|tar.*|glue.*",
     ),
     Mechanism(
         "stiff",
@@ -164,7 +164,7 @@ MECHANISMS = (
         "joints",
         "Walls that go on into each other must not be felt; not even where they gape by rounding.",
         r"down a chain of 30 collinear walls.*|along two collinear walls .*|sliding over a joint that gapes .*|"
-        r"rest on a floor of two walls",
+        r"rest on a floor of two walls.*",
     ),
     Mechanism(
         "degenerate",
@@ -232,13 +232,13 @@ MECHANISMS = (
         "degenerate",
         "one-way walls",
         "Through from one side, off the other, and past the end.",
-        r"one-way wall from its .*|past the end of a one-way wall .*|up to .* above a one-way wall and back",
+        r"one-way wall from its .*|past the end of a one-way wall .*|up to .* above a one-way wall and back.*",
     ),
     Mechanism(
         "degenerate",
         "borders of fields",
         "The force changes across a line on which the ball may come to rest.",
-        r"sliding into a field .*|oscillation about a field's border|at rest on a field's border|"
+        r"sliding into a field .*|oscillation about a field's border|at rest on a field's border.*|"
         r"hops on a floor end .*",
     ),
     Mechanism(

@@ -8,7 +8,7 @@ import numpy as np
 
 from bounce_env.report.methods.tutorial import points_scene, set_sides, ticks
 from bounce_env.report.stability.case import Case, Point
-from bounce_env.scene import Field, Scene, Sensor, Wall
+from bounce_env.scene import Field, Scene, SceneError, Sensor, Wall
 
 PER_SECOND = 960
 """Steps a second of all of them, or a few more, so that a whole number of them makes the case's duration."""
@@ -26,7 +26,7 @@ def outcome(peer: str, case: Case, right: Point | None, most_steps: int) -> str:
     right: where the ball has to be; None where the case is refused. most_steps: a run of more is not made.
     """
     if right is None:
-        return "not applicable: to be refused"
+        return "not applicable: nothing to compare"
     reason = _why_not(peer, case)
     steps = 0.0 if reason else sum(step for step in case.script if isinstance(step, float | int)) * PER_SECOND
     if steps > most_steps:
@@ -38,6 +38,10 @@ def outcome(peer: str, case: Case, right: Point | None, most_steps: int) -> str:
         place = play[peer](case)
     except ModuleNotFoundError as error:
         return f"not measured: {error.name} is not installed"
+    except SceneError:
+        return "not applicable: walls moved in by the ball's radius leave no room"
+    except Exception as error:  # of the peer
+        return f"failed: {type(error).__name__}"
     distance = math.dist(place, right) / _size(case)
     if math.isnan(distance) or distance > LOST:
         return "lost"

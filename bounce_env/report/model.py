@@ -2,7 +2,6 @@
 
 import csv
 import dataclasses
-import functools
 import io
 import json
 import math
@@ -74,8 +73,8 @@ class FeatureRow:
     """A built-in scene on the kernel of its own features (lean), and on the one that has them all (general).
 
     step: ns of CPU for a world's step in which nothing happens, in a batch. bounce: ns of CPU for a flight and its
-    bounce; None where balls do not bounce for long. compile, bytes: seconds of compiling and machine code of the kernel that
-    advances a batch; None where that was not measured.
+    bounce; None where balls do not bounce for long. compile, bytes: seconds of compiling and machine code of the
+    kernel that advances a batch; None where that was not measured.
     """
 
     scene: str
@@ -156,6 +155,8 @@ PARTS: dict[str, type[Row]] = {
 }
 """The parts of a report by their names in `report.json`."""
 
+_READERS: dict[str, TypeAdapter[Any]] = {part: TypeAdapter(kind) for part, kind in PARTS.items()}
+
 
 @dataclass
 class Report:
@@ -229,18 +230,12 @@ def from_json(part: str, plain: Mapping[str, Any]) -> Row:
     if set(plain) - names:
         raise ValueError(f"{part}: unknown fields {sorted(set(plain) - names)}, must be of {sorted(names)}")
     try:
-        row: Row = _reader(kind).validate_python(plain)
+        row: Row = _READERS[part].validate_python(plain)
     except ValidationError as error:
         wrong = error.errors()[0]
         where = ".".join(map(str, wrong["loc"]))
         raise ValueError(f"{part}: {where} = {shown(wrong['input'])}: {wrong['msg']}") from error
     return row
-
-
-@functools.cache
-def _reader(kind: Any) -> TypeAdapter[Row]:
-    reader: TypeAdapter[Row] = TypeAdapter(kind)
-    return reader
 
 
 def write_report(report: Report, path: Path) -> None:

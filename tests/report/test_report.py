@@ -189,8 +189,6 @@ def test_another_run_takes_nothing_over(tmp_path: Path):
     path.write_text("\n".join(damaged))
     assert Store(path, Options(quick=True), resume=True).rows.keys() == {"a", "c"}
     assert not Store(path, Options(quick=False), resume=True).rows
-    store.keep("a", ErrorRow("box", "engine", "a"))
-    assert Store(path, Options(quick=False), resume=True).interrupted == 0
 
 
 @pytest.mark.parametrize(

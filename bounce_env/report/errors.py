@@ -112,7 +112,7 @@ LONG = ("elastic_box", "gravity_box", "circle")
 ORDERED = ("box", "bumper_field")
 """Problems in which an error grows until the order of bounces is wrong."""
 
-SLOWER = {"engine": 1, "engine_frames": 10, "tutorial_recheck": 10, "tutorial_once": 10, "moreau": 10, "scipy": 4000}
+SLOWER = {"engine": 1, "engine_frames": 1000, "tutorial_recheck": 10, "tutorial_once": 10, "moreau": 10, "scipy": 4000}
 """By how much fewer bounces a slow method makes in a long run, which would take hours; 1000 where it is not named."""
 
 

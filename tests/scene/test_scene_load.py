@@ -13,6 +13,7 @@ from bounce_env.scene import (
     SceneError,
     Sensor,
     Wall,
+    builtin_scenes,
     load_scene,
     scene_from_dict,
 )
@@ -331,7 +332,7 @@ def test_a_source_that_is_neither_name_nor_path(source):
 def test_an_unknown_name_lists_the_built_in_scenes(name):
     with pytest.raises(SceneError) as caught:
         load_scene(name)
-    known = "box, guides, paddle, paddle_levels, pegs, pinball, walls"
+    known = ", ".join(builtin_scenes())
     assert str(caught.value).startswith(f"scene {name!r}: must be one of {known}, or the path of a .toml file")
 
 

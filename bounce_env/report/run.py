@@ -30,7 +30,7 @@ from bounce_env.scene import ALL_FEATURES, builtin_scenes, load_scene
 PARTS = ("error", "stability", "features", "speed")
 """What `report` can be asked for, besides all."""
 
-QUICK_FEATURES = ("elastic_box", "box")
+QUICK_FEATURES = ("elastic_box",)
 
 
 @dataclass(frozen=True)

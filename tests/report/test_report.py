@@ -100,7 +100,7 @@ def test_the_page_stands_alone_and_describes_its_pictures(folder: Path):
         assert f'id="error-{which.name}"' in page
         assert (folder / f"error_{which.name}.png").read_bytes().startswith(b"\x89PNG")
     for part in ("errors", "long", "stability", "features", "speed"):
-        assert len((folder / f"{part}.csv").read_text().splitlines()) > 2
+        assert len((folder / f"{part}.csv").read_text().splitlines()) >= 2
     assert not list(folder.glob(".*"))  # nothing unfinished is left
 
 

@@ -10,7 +10,7 @@ import pytest
 from bounce_env.report.stability.case import Case, Run, judge, new_world, play
 from bounce_env.report.stability.cases import CASES
 from bounce_env.report.stability.images import Image
-from tests.conftest import soak_count
+from tests.conftest import SOAK
 from tests.stability.clearance import deepest
 
 pytestmark = pytest.mark.slow
@@ -18,8 +18,8 @@ pytestmark = pytest.mark.slow
 SMALL, LARGE, SLOW = Image(length=2.0**-10), Image(length=2.0**19), Image(time=2.0**4)
 
 PLAYED = [case for case in CASES if not case.refused]
-# In the kernels of their own scenes, which take long to compile: two of them, and all under `make soak`.
-LEAN = [case for case in PLAYED if case.name.startswith("drop e=0.5") or soak_count(0, 1)]
+# In the kernels of their own scenes, which take long to compile; tests/engine/test_scene_features.py interprets them.
+LEAN = PLAYED if SOAK else []
 
 
 def each(cases: list[Case]) -> pytest.MarkDecorator:

@@ -100,6 +100,6 @@ def test_cap_never_leaves_the_ball_closing():
     engine = oracle(scene)
     engine.run((0, 20), (100, 0), mpf(0))
     engine.v = (mpf(100), mpf(0))
-    after = engine.after(paddle, (mpf(0), mpf(2)), (mpf(0), mpf(1)))
+    after = engine.after(0, (mpf(0), mpf(2)), (mpf(0), mpf(1)))
     assert float(after[1]) == pytest.approx(2.1)
     assert float(mpmath.hypot(*after)) == pytest.approx(3)

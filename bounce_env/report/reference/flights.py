@@ -101,7 +101,7 @@ class Oracle:
         max_events: int = 1000,
         touching: Iterable[int] = (),
     ) -> Run:
-        """Events up to `duration` [s], or the first `max_events` bounces and crossings.
+        """Events up to `duration` [s], the first `max_events` bounces and crossings, or the first soft hit.
 
         `commands`: (time, speed along the rail) of the paddle. `touching`: elements that the ball starts on,
         so that the rounded start is taken as exactly touching.
@@ -118,7 +118,7 @@ class Oracle:
         self.touching = set().union(*map(self.keys_of_contact, on))
         end = self.number(duration)
         waiting = [(self.number(t), self.number(s)) for t, s in commands]
-        while not self.out and len(self.events) < max_events:
+        while not self.out and len(self.events) < max_events and self.soft is None:
             while waiting and waiting[0][0] <= self.now:
                 self.paddle_speed = waiting.pop(0)[1]
             stop = self.time_of_stop()

@@ -86,7 +86,7 @@ def test_check_prints_every_error_of_every_file(tmp_path, capsys):
     ("words", "error"),
     [
         ("check", "files: must be at least one"),
-        ("check nowhere", "scene 'nowhere': must be one of box, guides"),
+        ("check nowhere", "scene 'nowhere': must be one of bowl, box"),
         ("check paddle no/such.toml", "scene 'no/such.toml': there is no such file"),
         ("check paddle --balls 0", "--balls 0: must be from 1 to"),
         ("check paddle --seed -1", "--seed -1: must be >= 0"),
@@ -165,7 +165,7 @@ def test_draw_writes_beside_the_scene(tmp_path, monkeypatch, capsys):
     assert (tmp_path / "tables" / "attic.png").is_file()
     assert (tmp_path / "pegs.png").is_file()
     assert main(["scenes", "draw", "tables"]) == 2
-    assert "must be one of box" in capsys.readouterr().err
+    assert "must be one of bowl, box" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

@@ -1,7 +1,8 @@
-"""Writing files so that whoever looks sees the old one or the new one, never half of one."""
+"""Writing files so that whoever looks sees the old one or the new one, never half of one; and telling them apart."""
 
+import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,3 +22,12 @@ def replacing(path: Path) -> Iterator[Path]:
         unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def hash_of_files(files: Iterable[Path], folder: Path | None = None) -> str:
+    """Return the SHA-256 over files, by their content and their place: in `folder`, or anywhere."""
+    digest = hashlib.sha256()
+    for path in sorted(files):
+        digest.update((path if folder is None else path.relative_to(folder)).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()

@@ -10,6 +10,7 @@ from pathlib import Path
 import bounce_env
 from bounce_env.commands.cli import FINE, say
 from bounce_env.extras import install_command, version
+from bounce_env.machine import processor
 
 PACKAGES = {
     "": ("gymnasium", "numpy", "numba", "llvmlite", "pydantic"),
@@ -26,7 +27,7 @@ def diagnose() -> int:
     say(f"bounce_env         {version()}, in {Path(bounce_env.__file__).parent}")
     say(f"python             {platform.python_version()}, {sys.executable}")
     say(f"system             {platform.platform()}")
-    say(f"processor          {_processor()}, {os.cpu_count()} threads")
+    say(f"processor          {processor()}, {os.cpu_count()} threads")
     for extra, packages in PACKAGES.items():
         for package in packages:
             say(f"{package:<18} {_version_of(package) or f'not installed: {install_command(extra)}'}")
@@ -41,13 +42,6 @@ def _version_of(package: str) -> str | None:
         return importlib.metadata.version(package)
     except importlib.metadata.PackageNotFoundError:
         return None
-
-
-def _processor() -> str:
-    """Its name, and that under which LLVM makes code for it."""
-    import llvmlite.binding  # noqa: PLC0415 (only what is asked for is imported)
-
-    return f"{platform.machine()}, {llvmlite.binding.get_host_cpu_name()}"
 
 
 def _cache() -> str:

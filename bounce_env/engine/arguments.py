@@ -21,6 +21,18 @@ SECONDS = f"finite and >= 0, at most {LARGEST:g}"
 """What a duration must be, in words."""
 
 
+def pushed(change: Any, worlds: tuple[int, ...] = ()) -> Floats:
+    """Return what is added to velocities [m/s], of shape `worlds` + (2,); one of shape (2,) is that of all worlds.
+
+    Raises ValueError for NaN, infinity and more than 1e15 either way.
+    """
+    rows, shape = numbers(change), (*worlds, 2)
+    if rows is None or rows.shape not in (shape, (2,)) or not (abs(rows) <= LARGEST).all():
+        each = f", or one of them for each of {worlds[0]} worlds" if worlds else ""
+        raise ValueError(f"push = {shown(change)}: must be (dvx, dvy), finite, at most {LARGEST:g} m/s{each}")
+    return np.array(np.broadcast_to(rows, shape))
+
+
 def commanded_part(scene: Scene, name: object) -> int:
     """Return the index of the part `name` among the scene's parts; ValueError for a name that no part has."""
     names = {part.name: m for m, (_, part) in enumerate(scene.parts) if part.name}

@@ -14,6 +14,7 @@ from bounce_env.engine.arguments import (
     SECONDS,
     commanded_part,
     commanded_velocities,
+    pushed,
 )
 from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import from_python
@@ -197,10 +198,8 @@ class World:
         Raises ValueError for NaN, infinity and more than 1e15 either way.
         """
         self._check_started()
-        rows = numbers(change)
-        if rows is None or rows.shape != (2,) or not (abs(rows) <= LARGEST).all():
-            raise ValueError(f"push = {shown(change)}: must be (dvx, dvy), finite, at most {LARGEST:g} m/s")
-        world_push_balls(self._bound, float(rows[0]), float(rows[1]))
+        dvx, dvy = pushed(change).tolist()
+        world_push_balls(self._bound, dvx, dvy)
 
     def replace(self, scene: Scene) -> None:
         """Go on in another scene: time, balls and their velocities stay; a part of the same name and kind keeps its

@@ -14,15 +14,15 @@ from bounce_env.engine.arguments import (
     SECONDS,
     commanded_part,
     commanded_velocities,
+    pushed,
 )
 from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import kernel
 from bounce_env.engine.events.commands import command, command_ends
 from bounce_env.engine.events.flights import disturb, place
-from bounce_env.engine.events.loop import BUDGET_SPENT, clear_hits, restart, resume, run
+from bounce_env.engine.events.loop import BUDGET_SPENT, begin_call, restart, run
 from bounce_env.engine.memory.records import Array, Counts
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.instant import later
 from bounce_env.engine.motion.readout import view_world
 from bounce_env.engine.packing import features_of_worlds, forced_features, pack
 from bounce_env.engine.placement import part_cores_at_start, place_clear, separate_placed_balls
@@ -44,9 +44,7 @@ def batch_reset(state: State, position: Floats, velocity: Floats) -> None:
 def batch_advance(state: State, seconds: float, max_events: int) -> int:
     unfinished = 0
     for w in range(state.worlds.shape[0]):
-        clear_hits(state, w)
-        resume(state, w)
-        hi, lo = later(state.worlds[w].time_hi, state.worlds[w].time_lo, seconds)
+        hi, lo = begin_call(state, w, seconds)
         unfinished += run(state, w, hi, lo, max_events, None) == BUDGET_SPENT
     return unfinished
 
@@ -54,9 +52,7 @@ def batch_advance(state: State, seconds: float, max_events: int) -> int:
 @kernel
 def batch_advance_until(state: State, bounces: int, seconds: float, max_events: int) -> None:
     for w in range(state.worlds.shape[0]):
-        clear_hits(state, w)
-        resume(state, w)
-        hi, lo = later(state.worlds[w].time_hi, state.worlds[w].time_lo, seconds)
+        hi, lo = begin_call(state, w, seconds)
         run(state, w, hi, lo, max_events, None, state.worlds[w].bounces + bounces)
 
 
@@ -178,11 +174,7 @@ class WorldBatch:
         Raises ValueError for NaN, infinity and more than 1e15 either way.
         """
         self._check_started()
-        rows = numbers(change)
-        if rows is None or rows.shape not in ((2,), (len(self), 2)) or not (abs(rows) <= LARGEST).all():
-            words = f"(dvx, dvy), finite, at most {LARGEST:g} m/s, or one of them for each of {len(self)} worlds"
-            raise ValueError(f"push = {shown(change)}: must be {words}")
-        batch_push(self._bound, np.ascontiguousarray(np.broadcast_to(rows, (len(self), 2))))
+        batch_push(self._bound, pushed(change, (len(self),)))
 
     @property
     def time(self) -> Floats:

@@ -9,10 +9,9 @@ from bounce_env.engine.compile.jit import kernel
 from bounce_env.engine.events.commands import command, command_ends
 from bounce_env.engine.events.crushing import free_all_crushed
 from bounce_env.engine.events.flights import disturb, place
-from bounce_env.engine.events.loop import clear_hits, restart, resume, run
+from bounce_env.engine.events.loop import begin_call, restart, run
 from bounce_env.engine.events.part_stops import resume_part
 from bounce_env.engine.memory.state import State
-from bounce_env.engine.motion.instant import later
 
 Floats = npt.NDArray[np.float64]
 
@@ -27,9 +26,7 @@ def world_reset(state: State, position: Floats, velocity: Floats) -> None:
 @kernel
 def world_begin_call(state: State, seconds: float) -> tuple[float, float]:
     """Begin a call of `advance`: the instant it goes to."""
-    clear_hits(state, 0)
-    resume(state, 0)
-    target: tuple[float, float] = later(state.worlds[0].time_hi, state.worlds[0].time_lo, seconds)
+    target: tuple[float, float] = begin_call(state, 0, seconds)
     return target
 
 
@@ -42,9 +39,7 @@ def world_advance_to(state: State, hi: float, lo: float, max_events: int, ledger
 @kernel
 def world_advance_until(state: State, bounces: int, seconds: float, max_events: int) -> None:
     """Advance until there have been `bounces` since reset, at most `seconds`."""
-    clear_hits(state, 0)
-    resume(state, 0)
-    hi, lo = later(state.worlds[0].time_hi, state.worlds[0].time_lo, seconds)
+    hi, lo = begin_call(state, 0, seconds)
     run(state, 0, hi, lo, max_events, None, bounces)
 
 

@@ -1,7 +1,6 @@
 """The runner: one list of jobs for all parts, with progress, resumed where it was interrupted."""
 
 import datetime
-import hashlib
 import json
 import os
 import platform
@@ -14,7 +13,8 @@ from typing import Any
 
 from bounce_env.engine.compile.cache import PACKAGE
 from bounce_env.extras import version
-from bounce_env.files import replacing
+from bounce_env.files import hash_of_files, replacing
+from bounce_env.machine import processor
 from bounce_env.report.errors import Plan, jobs
 from bounce_env.report.features import BASE, GENERAL, measure_cost, measure_features
 from bounce_env.report.methods import all_methods
@@ -114,7 +114,7 @@ def header_of(options: Options, methods: Iterable[Method]) -> dict[str, Any]:
         "bounce_env": version(),
         "commit": _commit(),
         "python": platform.python_version(),
-        "processor": _processor(),
+        "processor": processor(),
         "cores": os.cpu_count(),
         "load": [round(x, 2) for x in os.getloadavg()] if hasattr(os, "getloadavg") else None,
         "quick": options.quick,
@@ -134,22 +134,6 @@ def _commit() -> str | None:
         return None
 
 
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        return next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        return platform.processor() or platform.machine()
-
-
-def _package_hash() -> str:
-    """Return a hash over all of the package's sources and scenes."""
-    digest = hashlib.sha256()
-    for path in sorted([*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.toml")]):
-        digest.update(path.relative_to(PACKAGE).as_posix().encode() + path.read_bytes())
-    return digest.hexdigest()
-
-
 class Store:
     """Rows that are measured, kept in a file as they come, for a run that goes on after an interruption.
 
@@ -159,7 +143,8 @@ class Store:
 
     def __init__(self, path: Path, options: Options, *, resume: bool) -> None:
         self._path = path
-        self._key = [_package_hash(), repr(options)]
+        sources = [path for kind in ("*.py", "*.toml") for path in PACKAGE.rglob(kind)]
+        self._key = [hash_of_files(sources, PACKAGE), repr(options)]
         found = self._read()
         self.interrupted = len(found)
         self.rows: dict[str, Row] = found if resume else {}

@@ -17,6 +17,7 @@ from numba.core import caching
 from numba.core import types as nb_types
 
 from bounce_env.engine.compile.binding import BoundType
+from bounce_env.files import hash_of_files
 
 PACKAGE = Path(__file__).resolve().parents[2]
 
@@ -26,18 +27,14 @@ _foreign: dict[type, str | None] = {}
 
 @functools.cache
 def sources_hash(folder: Path) -> str:
-    """Return the SHA-256 over every source file that can end up in a kernel of `folder`, by place and content.
+    """Return what tells states of the sources apart that can end up in a kernel of `folder`.
 
     These are the engine's, and where the kernel is not the engine's those of its part of the package, or beside it;
     subfolders included.
     """
     own = PACKAGE / folder.relative_to(PACKAGE).parts[0] if PACKAGE in folder.parents else folder
-    digest = hashlib.sha256()
-    for place in sorted({PACKAGE / "engine", own}):
-        for path in sorted(place.rglob("*.py")):
-            digest.update(path.relative_to(place.parent).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
+    places = sorted({PACKAGE / "engine", own})
+    return " ".join(hash_of_files(place.rglob("*.py"), place.parent) for place in places)
 
 
 def follow_sources(kind: type, files: Iterable[Path]) -> None:
@@ -50,11 +47,8 @@ def follow_sources(kind: type, files: Iterable[Path]) -> None:
     if not foreign:
         return
     sources = {path for file in foreign if file.is_file() for path in _modules_around(file)}
-    digest = hashlib.sha256()
-    for path in sorted(sources):
-        digest.update(path.as_posix().encode())
-        digest.update(path.read_bytes())
-    _foreign[kind] = digest.hexdigest() if all(file.is_file() for file in foreign) else None
+    is_found = all(file.is_file() for file in foreign)
+    _foreign[kind] = hash_of_files(sources) if is_found else None
 
 
 def _modules_around(file: Path) -> Iterable[Path]:

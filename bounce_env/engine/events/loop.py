@@ -20,7 +20,7 @@ from bounce_env.engine.events.part_stops import reset_parts, stop_part
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, FLYING, NEXT_HIT, NEXT_SENSOR, NEXT_ZONE, OK, RESOLVE
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of
-from bounce_env.engine.motion.instant import before, since
+from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.motion.parts import part_offset_at, part_stop_instant
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED, UNSURE
 
@@ -219,6 +219,15 @@ def clear_hits(state: State, w: int) -> None:
         state.worlds[w].dirty = 0
         for element in range(state.hits.shape[1]):
             state.hits[w, element] = 0
+
+
+@function
+def begin_call(state: State, w: int, seconds: float) -> tuple[float, float]:
+    """Begin a call that advances world `w` by `seconds`: forget the last one; returns the instant that it goes to."""
+    clear_hits(state, w)
+    resume(state, w)
+    target: tuple[float, float] = later(state.worlds[w].time_hi, state.worlds[w].time_lo, seconds)
+    return target
 
 
 @function

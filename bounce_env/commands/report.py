@@ -6,10 +6,9 @@ from pathlib import Path
 from tqdm import tqdm
 
 from bounce_env.commands.cli import FINE, PROBLEMS, Refused, check_range, say
-from bounce_env.files import replacing
 from bounce_env.report.methods import all_methods
-from bounce_env.report.model import ErrorRow, Report, read_report, write_csv, write_report
-from bounce_env.report.page import is_of_a_report, page_of, pictures_of
+from bounce_env.report.model import ErrorRow, Report, read_report
+from bounce_env.report.output import write_all
 from bounce_env.report.problems import PROBLEMS as PROBLEMS_OF_REPORT
 from bounce_env.report.run import PARTS, Job, Options, Store, header_of, planned, run
 from bounce_env.report.winners import pairs_compared, wins_of_peers, worse_errors
@@ -38,7 +37,7 @@ def make_report(
         what = "are taken over" if resume else "are measured again; --resume would take them over"
         say(f"{counted(store.interrupted, 'row')} of an interrupted run {what}")
     report = run(jobs, header_of(options, used), store, _progress)
-    _write(report, output)
+    write_all(report, output)
     store.remove()
     _summarize(report, output)
     return FINE if older is None else _compared(report, older)
@@ -87,26 +86,8 @@ def _shown(jobs: Collection[Job], bar: tqdm) -> Iterator[Job]:
         bar.update()
 
 
-def _write(report: Report, output: Path) -> None:
-    pictures = pictures_of(report)
-    page = page_of(report, pictures)
-    for name, data in pictures.items():
-        with replacing(output / name) as unfinished:
-            unfinished.write_bytes(data)
-    for part, rows in report.rows.items():
-        if rows:
-            write_csv(rows, output / f"{part}.csv")
-    written = {*pictures, *(f"{part}.csv" for part, rows in report.rows.items() if rows)}
-    for path in [*output.glob("*.png"), *output.glob("*.csv")]:
-        if path.name not in written and is_of_a_report(path.name):
-            path.unlink()  # of an older report, of which nothing else is left
-    with replacing(output / "report.html") as unfinished:
-        unfinished.write_text(page, encoding="utf-8")
-    write_report(report, output / "report.json")
-
-
 def _summarize(report: Report, output: Path) -> None:
-    say(f"{output / 'report.html'}: {', '.join(f'{len(rows)} {part}' for part, rows in report.rows.items() if rows)}")
+    say(f"{output / 'report.html'}: {', '.join(f'{len(rows)} {part}' for part, rows in report.rows.items())}")
     wins = wins_of_peers(report.errors)
     for win in wins:
         peer = f"{win.peer.method} at {win.peer.setting}"

@@ -64,7 +64,7 @@ def _costs(scene: Scene, features: frozenset[Feature], pieces: int) -> tuple[flo
     places, speeds = _starts(scene)
     batch.reset(position=places, velocity=speeds)
     batch.advance(CALM)
-    step = least(lambda: batch.advance(CALM), pieces, repeats=20) / WORLDS
+    step = _least(lambda: batch.advance(CALM), pieces, repeats=20) / WORLDS
     bounces = []
     for _ in range(max(3, pieces // 10)):
         batch.reset(position=places, velocity=speeds)
@@ -76,7 +76,7 @@ def _costs(scene: Scene, features: frozenset[Feature], pieces: int) -> tuple[flo
     return step, None if few else min(bounces)
 
 
-def least(act: Callable[[], object], pieces: int, repeats: int) -> float:
+def _least(act: Callable[[], object], pieces: int, repeats: int) -> float:
     """Return the least ns of CPU of one call, over pieces of so many."""
     found = []
     for _ in range(pieces):

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from bounce_env.report.methods.base import FRAMES, Player, Trace
+from bounce_env.report.methods.base import Player, Trace
 from bounce_env.report.model import Spread
-from bounce_env.report.truths import Start, Truth
+from bounce_env.report.truths import FRAMES, Start, Truth
 
 ENOUGH, LEAST_STARTS = 1.0, 3
 """CPU seconds after which no more starts are timed, and how many are at least."""

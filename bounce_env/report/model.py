@@ -160,44 +160,24 @@ _READERS: dict[str, TypeAdapter[Any]] = {part: TypeAdapter(kind) for part, kind 
 
 @dataclass
 class Report:
-    """header: where, when and with which options it was made. rows: by part, in the order of their measuring."""
+    """Rows of each part, in the order of their measuring. header: where, when and with which options it was made."""
 
     header: dict[str, Any]
-    rows: dict[str, list[Any]] = field(default_factory=lambda: {part: [] for part in PARTS})
+    errors: list[ErrorRow] = field(default_factory=list)
+    long: list[LongRow] = field(default_factory=list)
+    stability: list[StabilityRow] = field(default_factory=list)
+    features: list[FeatureRow] = field(default_factory=list)
+    costs: list[FeatureCostRow] = field(default_factory=list)
+    speed: list[SpeedRow] = field(default_factory=list)
+
+    @property
+    def rows(self) -> dict[str, list[Any]]:
+        """The rows by the names of their parts; of those that have any."""
+        return {part: rows for part in PARTS if (rows := getattr(self, part))}
 
     def add(self, row: Row) -> None:
         """Put a row into its part."""
-        self.rows[part_of(row)].append(row)
-
-    @property
-    def errors(self) -> list[ErrorRow]:
-        """Rows of error against run time."""
-        return self.rows["errors"]
-
-    @property
-    def long(self) -> list[LongRow]:
-        """Rows of long runs."""
-        return self.rows["long"]
-
-    @property
-    def stability(self) -> list[StabilityRow]:
-        """Rows of hard cases."""
-        return self.rows["stability"]
-
-    @property
-    def features(self) -> list[FeatureRow]:
-        """Rows of what features cost."""
-        return self.rows["features"]
-
-    @property
-    def costs(self) -> list[FeatureCostRow]:
-        """Rows of what one feature costs."""
-        return self.rows["costs"]
-
-    @property
-    def speed(self) -> list[SpeedRow]:
-        """Rows of steps a second."""
-        return self.rows["speed"]
+        getattr(self, part_of(row)).append(row)
 
 
 def part_of(row: Row) -> str:
@@ -240,7 +220,7 @@ def from_json(part: str, plain: Mapping[str, Any]) -> Row:
 
 def write_report(report: Report, path: Path) -> None:
     """Write `report.json`."""
-    rows = {part: [to_json(row) for row in rows] for part, rows in report.rows.items()}
+    rows = {part: [to_json(row) for row in getattr(report, part)] for part in PARTS}
     with replacing(path) as unfinished:
         text = json.dumps({"schema": SCHEMA, "header": report.header, **rows}, indent=1, allow_nan=False)
         unfinished.write_text(text + "\n", encoding="utf-8")
@@ -276,15 +256,13 @@ def write_csv(rows: Iterable[Row], path: Path) -> None:
         unfinished.write_text(text.getvalue(), encoding="utf-8")
 
 
-_SPREADS = {"error", "cost", "rate"}
-
-
 def _flat(row: Row) -> dict[str, Any]:
     columns: dict[str, Any] = {}
-    for name, value in dataclasses.asdict(row).items():
-        if name in _SPREADS and (value is None or isinstance(value, dict)):
+    for f in dataclasses.fields(row):
+        value = getattr(row, f.name)
+        if f.type in (Spread, Spread | None):
             for share in ("median", "low", "high"):
-                columns[f"{name}_{share}"] = None if value is None else value[share]
+                columns[f"{f.name}_{share}"] = None if value is None else getattr(value, share)
         else:
-            columns[name] = " ".join(value) if isinstance(value, tuple) else value
+            columns[f.name] = " ".join(value) if isinstance(value, tuple) else value
     return columns

@@ -7,7 +7,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from bounce_env.report.model import PARTS, ErrorRow, Report, Spread
+from bounce_env.report.model import ErrorRow, Report, Spread
 from bounce_env.report.pictures import STYLES, features_picture, speed_picture, work_precision
 from bounce_env.report.problems import PROBLEMS, Problem
 from bounce_env.report.winners import pairs_compared, wins_of_peers
@@ -26,11 +26,6 @@ def pictures_of(report: Report) -> dict[str, bytes]:
     if any(row.what.endswith(", vector env") for row in report.speed):
         pictures["speed.png"] = speed_picture(report.speed)
     return pictures
-
-
-def is_of_a_report(name: str) -> bool:
-    """Return whether a report writes a picture or table of this name."""
-    return name in {"features.png", "speed.png", *(f"{part}.csv" for part in PARTS)} or name.startswith("error_")
 
 
 def _unit(problem: Problem) -> str:

@@ -1,7 +1,9 @@
 """The problems of the report: a scene, starts, a script of commands, and the times at which places are compared."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -9,8 +11,8 @@ from bounce_env.report import truths
 from bounce_env.report.truths import Command, Question, Start, Truth
 from bounce_env.scene import Bumper, Scene, load_scene
 
-FRAME = 1.0 / 60.0
-"""All times at which places are compared, and all commands, are multiples of it [s]: every stepper comes to them."""
+NewStart = Callable[[Scene, np.random.Generator], Start]
+"""Draws a start in a scene."""
 
 
 @dataclass(frozen=True)
@@ -25,14 +27,14 @@ class Problem:
     name: str
     title: str
     why: str
-    new_start: Callable[[np.random.Generator], Start]
+    new_start: NewStart
     truth: Callable[[Question, Start], Truth]
     frames: int
     commands: tuple[Command, ...] = ()
     chaotic: bool = False
     ordered: bool = True
 
-    @property
+    @cached_property
     def scene(self) -> Scene:
         """The scene."""
         return load_scene(self.name)
@@ -43,28 +45,27 @@ class Problem:
 
     def starts(self, count: int, seed: int) -> list[Start]:
         """Return the starts, the same for every method."""
-        rng = np.random.default_rng([seed, *self.name.encode()])
-        return [self.new_start(rng) for _ in range(count)]
+        rng, found = np.random.default_rng([seed, *self.name.encode()]), list[Start]()
+        while len(found) < count:
+            start = self.new_start(self.scene, rng)
+            if _is_free(self.scene, start):
+                found.append(start)
+        return found
 
 
-def _in_box(width: float, height: float, speed: float) -> Callable[[np.random.Generator], Start]:
-    def draw(rng: np.random.Generator) -> Start:
-        x, y = rng.uniform(0.1, 0.9, 2) * (width, height)
+def _is_free(scene: Scene, start: Start) -> bool:
+    """Return whether a ball at its start is clear of the bumpers, by its radius and more."""
+    bumpers = [e for e in scene.elements if isinstance(e, Bumper)]
+    return all(math.dist(start.position, e.center) > e.radius + 2.0 * scene.ball.radius for e in bumpers)
+
+
+def _in_the_scene(speed: float) -> NewStart:
+    """Draw a start in the box around the scene, not near its sides."""
+
+    def draw(scene: Scene, rng: np.random.Generator) -> Start:
+        left, bottom, right, top = scene.bounds
+        x, y = (left, bottom) + rng.uniform(0.1, 0.9, 2) * (right - left, top - bottom)
         return Start((float(x), float(y)), _velocity(rng, speed))
-
-    return draw
-
-
-def _between(
-    circles: list[tuple[float, float, float]], side: float, speed: float
-) -> Callable[[np.random.Generator], Start]:
-    """Draw a start in a square, outside of the circles x, y, radius."""
-
-    def draw(rng: np.random.Generator) -> Start:
-        while True:
-            x, y = rng.uniform(0.1, 0.9, 2) * side
-            if all(np.hypot(x - cx, y - cy) > r + 0.05 * side for cx, cy, r in circles):
-                return Start((float(x), float(y)), _velocity(rng, speed))
 
     return draw
 
@@ -75,68 +76,63 @@ def _velocity(rng: np.random.Generator, speed: float) -> tuple[float, float]:
     return float(x * share), float(y * share)
 
 
-def _drop(rng: np.random.Generator) -> Start:
+def _drop(scene: Scene, rng: np.random.Generator) -> Start:
     return Start((float(rng.uniform(-1, 1)), float(rng.uniform(0.3, 0.8))), (float(rng.uniform(-1, 1)), 0.0))
 
 
-def _drop_on_slope(rng: np.random.Generator) -> Start:
+def _drop_on_slope(scene: Scene, rng: np.random.Generator) -> Start:
     return Start((0.0, float(rng.uniform(0.3, 0.8))), (0.0, 0.0))
 
 
-def _into_wedge(rng: np.random.Generator) -> Start:
+def _into_wedge(scene: Scene, rng: np.random.Generator) -> Start:
     x = float(rng.uniform(-0.8, 0.8))
     return Start((x, abs(x) + float(rng.uniform(0.3, 1.0))), (float(rng.uniform(-0.5, 0.5)), 0.0))
 
 
-def _in_circle(rng: np.random.Generator) -> Start:
+def _in_circle(scene: Scene, rng: np.random.Generator) -> Start:
     angle, radius = rng.uniform(0, 2 * np.pi), rng.uniform(0.0, 0.8)
     return Start((float(radius * np.cos(angle)), float(radius * np.sin(angle))), _velocity(rng, 3.0))
 
 
-def _on_bowl(rng: np.random.Generator) -> Start:
+def _on_bowl(scene: Scene, rng: np.random.Generator) -> Start:
     angle = float(rng.uniform(0.2, 1.4)) * float(rng.choice([-1.0, 1.0]))
     return Start((float(0.95 * np.sin(angle)), float(-0.95 * np.cos(angle))), (0.0, 0.0))
 
 
-def _at_bottom_of_loop(rng: np.random.Generator) -> Start:
+def _at_bottom_of_loop(scene: Scene, rng: np.random.Generator) -> Start:
     # Between 2 g r, where it comes half up, and 5 g r, where it comes around.
     speed = float(np.sqrt(rng.uniform(2.4, 4.6) * 9.81 * 0.95))
     return Start((0.0, -0.95), (speed * float(rng.choice([-1.0, 1.0])), 0.0))
 
 
-def _above_flipper(rng: np.random.Generator) -> Start:
+def _above_flipper(scene: Scene, rng: np.random.Generator) -> Start:
     return Start((float(rng.uniform(0.03, 0.07)), float(rng.uniform(0.02, 0.04))), (0.0, 0.0))
 
 
-def _before_wall(rng: np.random.Generator) -> Start:
+def _before_wall(scene: Scene, rng: np.random.Generator) -> Start:
     return Start((float(rng.uniform(0.3, 1.7)), 0.0), (float(rng.choice([-1, 1]) * rng.uniform(0.7, 1.5)), 0.0))
 
 
-def _on_table(rng: np.random.Generator) -> Start:
-    bumpers = [e for e in load_scene("pinball").elements if isinstance(e, Bumper)]
-    while True:
-        x, y = float(rng.uniform(0.12, 0.38)), float(rng.uniform(0.62, 0.8))
-        if all(np.hypot(x - e.center[0], y - e.center[1]) > 2.0 * e.radius for e in bumpers):
-            return Start((x, y), _velocity(rng, 1.5))
+def _on_table(scene: Scene, rng: np.random.Generator) -> Start:
+    """Draw a start among the bumpers."""
+    return Start((float(rng.uniform(0.12, 0.38)), float(rng.uniform(0.62, 0.8))), _velocity(rng, 1.5))
 
 
-_SINAI = [(2.3, 2.6, 1.1), (7.1, 2.2, 0.9), (4.9, 5.3, 1.2), (2.2, 7.8, 0.8), (7.9, 7.2, 1.0)]
-_FIELD = [(0.5, 0.5, 0.2), (1.5, 0.5, 0.2), (1.0, 1.0, 0.2), (0.5, 1.5, 0.2), (1.5, 1.5, 0.2)]
 _FLIGHTS = "Truth: roots of polynomials at 50 digits."
 
 PROBLEMS = (
     Problem(
         "elastic_box", "Elastic box", f"Nothing is lost, nothing is chaotic: an error can only add up. {_FLIGHTS}",
-        _in_box(2.0, 1.0, 3.0), truths.by_flights, 600,
+        _in_the_scene(3.0), truths.by_flights, 600,
     ),
     Problem(
         "box", "Sinai box", "Five circles scatter: each hit on one multiplies a small error by about three, and errors "
         f"are divided by that growth. {_FLIGHTS}",
-        _between(_SINAI, 10.0, 10.0), truths.by_flights, 240, chaotic=True,
+        _in_the_scene(10.0), truths.by_flights, 240, chaotic=True,
     ),
     Problem(
         "gravity_box", "Gravity box", f"Elastic bounces under gravity: energy must neither grow nor shrink. {_FLIGHTS}",
-        _in_box(1.0, 1.5, 2.0), truths.by_flights, 600,
+        _in_the_scene(2.0), truths.by_flights, 600,
     ),
     Problem(
         "zeno_drop", "Zeno drop", "Infinitely many bounces in finite time, then a slide. Truth: the geometric series.",
@@ -177,7 +173,7 @@ PROBLEMS = (
     Problem(
         "bumper_field", "Bumpers with b = 1.5", "Every hit on a bumper gives speed, up to a cap, and scatters. "
         f"{_FLIGHTS}",
-        _between(_FIELD, 2.0, 2.0), truths.by_flights, 90, chaotic=True,
+        _in_the_scene(2.0), truths.by_flights, 90, chaotic=True,
     ),
     Problem(
         "pinball", "Pinball table", "The game's table, flippers at rest, up to the first hit too slow to rebound: "

@@ -14,17 +14,19 @@ from mpmath import mpf
 from bounce_env.report.reference.flights import BOUNCE, Oracle
 from bounce_env.report.reference.moving import MovingOracle
 from bounce_env.report.reference.pendulum import pendulum_flight
-from bounce_env.scene import Scene, Wall
+from bounce_env.scene import Arc, Scene, Wall
 
 DIGITS = 50
 MORE_DIGITS = 120
-LONG = 600
+MANY_FRAMES = 600
 """From so many frames on a chaotic problem needs more digits: each bounce costs up to one."""
 
 COMPARED = 8
 """How many times places are compared, evenly spaced."""
 
-_FRAMES = 60  # a second
+FRAMES = 60
+"""Frames a second. All commands, and all times at which places are compared, are at a frame: steppers come to it."""
+
 _DISPLACED = mpf(2) ** -100
 
 Num = Any
@@ -71,21 +73,15 @@ class Truth:
     top_speed: float
 
 
-@dataclass(frozen=True)
-class _Leg:
-    """Free flight from an instant on."""
+class _Leg(NamedTuple):
+    """Free flight from an instant on, after a hit on `element`."""
 
     time: Num
     x: Num
     y: Num
     vx: Num
     vy: Num
-    element: int = -1
-
-
-def _leg(time: Num, numbers: Sequence[Num], element: int) -> _Leg:
-    x, y, vx, vy = numbers[:4]
-    return _Leg(time, x, y, vx, vy, element)
+    element: int
 
 
 def compared_frames(last: int) -> npt.NDArray[np.int64]:
@@ -96,19 +92,24 @@ def compared_frames(last: int) -> npt.NDArray[np.int64]:
 
 def by_flights(question: Question, start: Start) -> Truth:
     """Solve for what stands: polynomials at 50 digits, up to the first soft hit."""
-    with mpmath.workdps(DIGITS if question.frames <= LONG else MORE_DIGITS):
+    with mpmath.workdps(DIGITS if question.frames <= MANY_FRAMES else MORE_DIGITS):
         here, end = _flight_legs(question, start, mpf(0))
         there, _ = _flight_legs(question, start, _DISPLACED)
-        return _truth(question, here, there, compared_frames(int(end * _FRAMES)))
+        return _truth(question, here, there, compared_frames(int(end * FRAMES)))
 
 
 def _flight_legs(question: Question, start: Start, shift: Num) -> tuple[list[_Leg], Num]:
     x, y = mpf(start.position[0]) + shift, mpf(start.position[1]) + shift / 3
     oracle = Oracle(question.scene, mpf)
-    run = oracle.run((x, y), start.velocity, mpf(question.frames) / _FRAMES, max_events=100_000)
+    run = oracle.run((x, y), start.velocity, mpf(question.frames) / FRAMES, max_events=100_000)
     legs = [_Leg(e.time, e.x, e.y, e.vx, e.vy, e.element) for e in run.events if e.kind == BOUNCE]
     end = run.time if run.soft is None else run.soft
-    return [_Leg(mpf(0), x, y, *map(mpf, start.velocity)), *legs], end
+    return [_first_leg(x, y, start), *legs], end
+
+
+def _first_leg(x: Num, y: Num, start: Start) -> _Leg:
+    vx, vy = map(mpf, start.velocity)
+    return _Leg(mpf(0), x, y, vx, vy, -1)
 
 
 def by_creeping(question: Question, start: Start) -> Truth:
@@ -120,20 +121,24 @@ def by_creeping(question: Question, start: Start) -> Truth:
 
 def _creeping_legs(question: Question, start: Start, shift: Num) -> list[_Leg]:
     x, y = mpf(start.position[0]) + shift, mpf(start.position[1]) + shift / 3
-    commands = [(mpf(frame) / _FRAMES, name, value) for frame, name, value in question.commands]
-    hits = MovingOracle(question.scene).run([(x, y)], [start.velocity], mpf(question.frames) / _FRAMES, commands)
-    legs = [_leg(h.time, h.numbers, h.element) for h in hits if h.ball == 0]
-    return [_Leg(mpf(0), x, y, *map(mpf, start.velocity)), *legs]
+    commands = [(mpf(frame) / FRAMES, name, value) for frame, name, value in question.commands]
+    hits = MovingOracle(question.scene).run([(x, y)], [start.velocity], mpf(question.frames) / FRAMES, commands)
+    legs = []
+    for hit in hits:
+        if hit.ball == 0:
+            hx, hy, vx, vy = hit.numbers[:4]
+            legs.append(_Leg(hit.time, hx, hy, vx, vy, hit.element))
+    return [_first_leg(x, y, start), *legs]
 
 
 def _truth(question: Question, here: list[_Leg], there: list[_Leg], frames: npt.NDArray[np.int64]) -> Truth:
     places, growth = [], []
     for frame in frames.tolist():
-        x, y = _place(question, here, mpf(frame) / _FRAMES)
-        other_x, other_y = _place(question, there, mpf(frame) / _FRAMES)
+        x, y = _place(question, here, mpf(frame) / FRAMES)
+        other_x, other_y = _place(question, there, mpf(frame) / FRAMES)
         places.append((float(x), float(y)))
         growth.append(max(1.0, float(mpmath.hypot(other_x - x, other_y - y) / _DISPLACED)))
-    last = mpf(int(frames[-1])) / _FRAMES if len(frames) else mpf(0)
+    last = mpf(int(frames[-1])) / FRAMES if len(frames) else mpf(0)
     order = tuple(leg.element for leg in here[1:] if leg.time <= last)
     speed = max(float(mpmath.hypot(leg.vx, leg.vy)) for leg in here)
     return Truth(frames, np.array(places).reshape(-1, 2), np.array(growth), order if question.ordered else None, speed)
@@ -158,13 +163,11 @@ def of_zeno(question: Question, start: Start) -> Truth:
         if (start.position[0] - wall.start[0]) * n[0] + (start.position[1] - wall.start[1]) * n[1] < 0:
             n = -n[0], -n[1]
         frames = compared_frames(question.frames)
-        places = [_zeno_place(question, start, u, n, mpf(f) / _FRAMES) for f in frames.tolist()]
+        places = [_zeno_place(question, start, u, n, mpf(f) / FRAMES) for f in frames.tolist()]
         return Truth(frames, np.array(places), np.ones(len(frames)), None, _top_speed_of_zeno(question, start, u, n))
 
 
-def _zeno_place(
-    question: Question, start: Start, u: tuple[Num, Num], n: tuple[Num, Num], t: Num
-) -> tuple[float, float]:
+def _zeno_place(question: Question, start: Start, u: Pair, n: Pair, t: Num) -> tuple[float, float]:
     scene, wall = question.scene, question.scene.elements[0]
     assert isinstance(wall, Wall)
     gravity = tuple(map(mpf, scene.gravity))
@@ -201,11 +204,11 @@ def _top_speed_of_zeno(question: Question, start: Start, u: Pair, n: Pair) -> fl
     pull, press = (sum(question.scene.gravity[k] * d[k] for k in (0, 1)) for d in (u, n))
     hit = mpmath.sqrt(rise * rise - 2 * press * height)
     at_hit = along + pull * (rise + hit) / -press
-    return float(max(mpmath.hypot(at_hit, hit), abs(along + pull * question.frames / _FRAMES)))
+    return float(max(mpmath.hypot(at_hit, hit), abs(along + pull * question.frames / FRAMES)))
 
 
 def of_bowl(question: Question, start: Start) -> Truth:
-    """Solve a slide that never ends."""
+    """Solve a slide inside of a circle about the origin that never ends."""
     return _of_slide(question, start, None)
 
 
@@ -215,11 +218,13 @@ def of_loop(question: Question, start: Start) -> Truth:
 
 
 def _of_slide(question: Question, start: Start, share: float | None) -> Truth:
-    radius, pull = 1.0 - question.scene.ball.radius, -question.scene.gravity[1]
+    (arc,) = question.scene.elements
+    assert isinstance(arc, Arc)
+    radius, pull = arc.radius - question.scene.ball.radius, -question.scene.gravity[1]
     (x, y), speed = start.position, start.velocity[0]
     place, end = pendulum_flight(radius, x, y, speed, pull, lets_go=share is not None)
-    last = question.frames if share is None else min(question.frames, int(share * end * _FRAMES))
+    last = question.frames if share is None else min(question.frames, int(share * end * FRAMES))
     frames = compared_frames(last)
-    places = np.array([place(mpf(f) / _FRAMES) for f in frames.tolist()])
+    places = np.array([place(mpf(f) / FRAMES) for f in frames.tolist()])
     at_bottom = float(np.sqrt(speed * speed + 2.0 * pull * (y + radius)))
     return Truth(frames, places, np.ones(len(frames)), None, at_bottom)

@@ -6,9 +6,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from bounce_env.report.problems import FRAME, PROBLEMS, problem
+from bounce_env.report.problems import PROBLEMS, problem
 from bounce_env.report.reference.pendulum import pendulum_flight
-from bounce_env.report.truths import Start
+from bounce_env.report.truths import FRAMES, Start
 from bounce_env.scene import builtin_scenes
 
 pytestmark = pytest.mark.fast
@@ -44,7 +44,7 @@ def test_in_the_elastic_box_the_unfolded_way_is_straight():
     start = Start((0.3, 0.4), (2.0, -1.5))
     truth = problem("elastic_box").solve(start)
     for frame, (x, y) in zip(truth.frames.tolist(), truth.places.tolist(), strict=True):
-        t = frame * FRAME
+        t = frame / FRAMES
         assert x == pytest.approx(folded(0.3 + 2.0 * t, 0.05, 1.95), abs=1e-13)
         assert y == pytest.approx(folded(0.4 - 1.5 * t, 0.05, 0.95), abs=1e-13)
     assert set(truth.order) == {0, 1, 2, 3}
@@ -55,9 +55,9 @@ def test_a_zeno_drop_is_over_at_the_sum_of_the_series_and_its_first_hops_are_par
     truth = problem("zeno_drop").solve(start)
     over = math.sqrt(2 * 0.5 / 9.81) * (1 + 0.7) / (1 - 0.7)
     for frame, (x, y) in zip(truth.frames.tolist(), truth.places.tolist(), strict=True):
-        assert x == pytest.approx(0.25 * frame * FRAME, rel=1e-15)
-        assert (y == 0.05) == (frame * FRAME > over)
-    fall, t = math.sqrt(2 * 0.5 / 9.81), 30 * FRAME
+        assert x == pytest.approx(0.25 * frame / FRAMES, rel=1e-15)
+        assert (y == 0.05) == (frame / FRAMES > over)
+    fall, t = math.sqrt(2 * 0.5 / 9.81), 30 / FRAMES
     rise = 0.7 * 9.81 * fall
     assert truth.frames[0] == 30
     assert truth.places[0, 1] == pytest.approx(0.05 + rise * (t - fall) - 9.81 * (t - fall) ** 2 / 2, rel=1e-14)

@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from importlib import import_module
 
-from bounce_env.report.methods.base import Method, Setting
+from bounce_env.report.methods.base import Method, Player, Setting
 from bounce_env.report.methods.engine import engine_methods
 from bounce_env.report.methods.moreau import Moreau
 from bounce_env.report.methods.tutorial import Tutorial
@@ -30,8 +30,8 @@ class NotInstalled(Method):
         """Return that it is not there."""
         return self.note
 
-    def player(self, problem: Problem, setting: Setting, top_speed: float) -> "None":  # type: ignore[override]
-        """Never called."""
+    def player(self, problem: Problem, setting: Setting, top_speed: float) -> Player:
+        """Raise NotImplementedError: nobody calls it."""
         raise NotImplementedError
 
 

@@ -1,12 +1,10 @@
 """PyPI's `billiards`: exact and event-driven, without gravity and restitution. GPL-3: no extra of ours names it."""
 
 import billiards
-import numpy as np
-import numpy.typing as npt
 
-from bounce_env.report.methods.base import FRAMES, Method, Player, Setting, Trace
+from bounce_env.report.methods.base import Ball, Method, Player, Setting
 from bounce_env.report.problems import Problem
-from bounce_env.report.truths import Start
+from bounce_env.report.truths import FRAMES, Start
 from bounce_env.scene import Bumper, Wall, moves
 
 
@@ -28,19 +26,18 @@ class BilliardsPlayer(Player):
         self._billiard = billiards.Billiard(obstacles)
         self._billiard.add_ball(start.position, start.velocity, self._scene.ball.radius)
 
+        self._frame = 0
+
     def go(self, frames: int) -> None:
         """Evolve in one call."""
-        self._billiard.evolve(frames / FRAMES)
+        self._frame += frames
+        rows = self._billiard.evolve(self._frame / FRAMES)
+        if self.struck is not None:
+            self.struck += [self._index[id(obstacle)] for _, _, obstacle in rows]
 
-    def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
-        """Evolve from frame to frame."""
-        self.begin(start)
-        places, struck = [], list[int]()
-        for frame in frames.tolist():
-            struck += [self._index[id(obstacle)] for _, _, obstacle in self._billiard.evolve(frame / FRAMES)]
-            places.append(self._billiard.balls_position[0].copy())
-        vx, vy = self._billiard.balls_velocity[0].tolist()
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx, vy))
+    def ball(self) -> Ball:
+        """Return the ball."""
+        return (*self._billiard.balls_position[0].tolist(), *self._billiard.balls_velocity[0].tolist())
 
 
 class Billiards(Method):

@@ -5,13 +5,10 @@ import warnings
 from collections import Counter
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
-from bounce_env.report.methods.solids import CHORDS, chords, offset_at, timelines_of
+from bounce_env.report.methods.base import QUICK_STEPS, STEPS, Ball, Method, Player, Setting
+from bounce_env.report.methods.solids import CHORDS, chords, comes_from_left, rates_in_step, timelines_of
 from bounce_env.report.problems import Problem
-from bounce_env.report.truths import Start
+from bounce_env.report.truths import FRAMES, Start
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, moves
 
 with warnings.catch_warnings():
@@ -97,6 +94,11 @@ class Box2DScene:
         self.ball.position = (position[0] * self.scale, position[1] * self.scale)
         self.ball.linearVelocity = (velocity[0] * self.scale, velocity[1] * self.scale)
 
+    def now(self) -> Ball:
+        """Return the ball, unscaled."""
+        (x, y), (vx, vy), s = self.ball.position, self.ball.linearVelocity, self.scale
+        return x / s, y / s, vx / s, vy / s
+
     def _give_kicks(self) -> None:
         """Give a kick as soon as the ball has rebounded, which may be a step after it began to touch."""
         waiting = []
@@ -160,11 +162,7 @@ class _Listener(Box2D.b2ContactListener):  # type: ignore[misc]
         fixture, _, _ = self._surface(contact)
         wall: Any = self._scene.scene.elements[fixture.userData]
         if getattr(wall, "one_way", False):
-            (x0, y0), (x1, y1) = wall.start, wall.end
-            (x, y), (vx, vy), s = self._scene.ball.position, self._scene.ball.linearVelocity, self._scene.scale
-            left = (x1 - x0) * (y / s - y0) - (y1 - y0) * (x / s - x0)
-            closes = (x1 - x0) * vy - (y1 - y0) * vx
-            contact.enabled = left > 0.0 and closes < 0.0
+            contact.enabled = comes_from_left(wall, *self._scene.now())
 
     def _surface(self, contact: Any) -> tuple[Any, float, float]:
         manifold = contact.worldManifold  # kept: its normal is a view of it
@@ -200,37 +198,29 @@ class Box2DPlayer(Player):
         self._peer.place(start.position, start.velocity)
         self._step = 0
 
+    def watch(self) -> None:
+        """Note what begins to be touched."""
+        self._peer.strikes = self.struck = []
+
     def go(self, frames: int) -> None:
         """Step in a Python loop, as its users do."""
         for _ in range(frames * self._each):
+            now = self._step * self._dt
             if self._timelines is not None:
-                self._steer()
-            self._peer.step(self._dt, self._step * self._dt)
+                self._steer(rates_in_step(self._scene, self._timelines, now, self._dt))
+            self._peer.step(self._dt, now)
             self._step += 1
 
-    def _steer(self) -> None:
-        assert self._timelines is not None
-        now = self._step * self._dt
-        for m, body in enumerate(self._peer.parts):
-            part = self._scene.parts[m][1]
-            rate = (offset_at(self._timelines, m, now + self._dt)[0] - offset_at(self._timelines, m, now)[0]) / self._dt
-            if isinstance(part, Flipper):
-                body.angularVelocity = rate if part.active_angle > part.rest_angle else -rate
+    def _steer(self, rates: list[tuple[bool, float]]) -> None:
+        for body, (turns, rate) in zip(self._peer.parts, rates, strict=True):
+            if turns:
+                body.angularVelocity = rate
             else:
                 body.linearVelocity = (rate * self._scale, 0.0)
 
-    def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
-        """Step from frame to frame, and note what begins to be touched."""
-        self.begin(start)
-        self._peer.strikes = struck = list[int]()
-        now, places = 0, []
-        for frame in frames.tolist():
-            self.go(frame - now)
-            now = frame
-            x, y = self._peer.ball.position
-            places.append((x / self._scale, y / self._scale))
-        vx, vy = self._peer.ball.linearVelocity
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx / self._scale, vy / self._scale))
+    def ball(self) -> Ball:
+        """Return the ball."""
+        return self._peer.now()
 
 
 class Box2DMethod(Method):
@@ -243,10 +233,6 @@ class Box2DMethod(Method):
         f"{LONGEST_WAY} m in a step, at most {FASTEST:g} m/s; "
         f"arcs of {CHORDS} chords a circle"
     )
-
-    def why_not(self, problem: Problem) -> str | None:
-        """Return None: it plays all."""
-        return None
 
     def player(self, problem: Problem, setting: Setting, top_speed: float) -> Player:
         """Get ready."""

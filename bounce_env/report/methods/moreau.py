@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.report.methods import solids
-from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
-from bounce_env.report.methods.solids import gap_to, solids_of, timelines_of
+from bounce_env.report.methods.base import QUICK_STEPS, STEPS, Ball, Method, Player, Setting
+from bounce_env.report.methods.solids import gap_to, is_behind_gate, solids_of, timelines_of
 from bounce_env.report.problems import Problem
-from bounce_env.report.truths import Start
+from bounce_env.report.truths import FRAMES, Start
 
 Floats = npt.NDArray[np.float64]
 
@@ -45,7 +45,7 @@ def advance(
             if gap > 0.0:
                 continue
             before = (ball[2] - ux) * nx + (ball[3] - uy) * ny
-            if rows[i, solids.ONE_WAY] > 0.0 and _from_the_right(rows[i], nx, ny):
+            if is_behind_gate(rows[i], nx, ny):
                 continue
             rebound = max(-rows[i, solids.B] * before, 0.0)
             cold = (k * h - last[i, 1]) >= rows[i, solids.COOLDOWN]
@@ -77,12 +77,6 @@ def advance(
     return count
 
 
-@numba.njit(cache=True)
-def _from_the_right(row: Floats, nx: float, ny: float) -> bool:
-    ex, ey = row[solids.BX] - row[solids.AX], row[solids.BY] - row[solids.AY]
-    return nx * -ey + ny * ex <= 0.0
-
-
 class MoreauPlayer(Player):
     """The stepper on one problem."""
 
@@ -93,34 +87,27 @@ class MoreauPlayer(Player):
         self._numbers = np.array([1.0 / per_second, *scene.gravity, scene.ball.radius, cap])
         self._each = per_second // FRAMES
         self._ball, self._last = np.zeros(4), np.zeros((len(self._rows), 2))
-        self._struck = np.zeros(_MOST_STRIKES)
+        self._strikes = np.zeros(_MOST_STRIKES)
 
     def begin(self, start: Start) -> None:
         """Put the ball at its start."""
         self._ball[:] = *start.position, *start.velocity
         self._last[:] = -2, -math.inf
 
+        self._step = 0
+
     def go(self, frames: int) -> None:
         """Take all steps in one compiled call."""
-        self._advance(0, frames)
+        steps, ways = frames * self._each, (self._rows, self._timelines, self._numbers, self._ball, self._last)
+        count = advance(*ways, self._step, steps, self._strikes)
+        self._step += steps
+        if self.struck is not None:
+            self.struck += self._strikes[:count].astype(int).tolist()
 
-    def _advance(self, frame: int, frames: int) -> int:
-        first, steps = frame * self._each, frames * self._each
-        return int(
-            advance(self._rows, self._timelines, self._numbers, self._ball, self._last, first, steps, self._struck)
-        )
-
-    def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
-        """Step from frame to frame."""
-        self.begin(start)
-        now, places, struck = 0, [], list[int]()
-        for frame in frames.tolist():
-            count = self._advance(now, frame - now)
-            struck += self._struck[:count].astype(int).tolist()
-            places.append(self._ball[:2].copy())
-            now = frame
-        _, _, vx, vy = self._ball.tolist()
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx, vy))
+    def ball(self) -> Ball:
+        """Return the ball."""
+        x, y, vx, vy = self._ball.tolist()
+        return x, y, vx, vy
 
 
 class Moreau(Method):
@@ -128,11 +115,8 @@ class Moreau(Method):
 
     name, label = "moreau", "Moreau-Jean stepper"
     settings, quick = STEPS, QUICK_STEPS
+    slower = 10
     note = f"compiled, {SWEEPS} sweeps of Gauss-Seidel where two or more are touched"
-
-    def why_not(self, problem: Problem) -> str | None:
-        """Return None: it plays all."""
-        return None
 
     def player(self, problem: Problem, setting: Setting, top_speed: float) -> Player:
         """Get ready."""

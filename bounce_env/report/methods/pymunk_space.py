@@ -5,14 +5,12 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 import pymunk
 
-from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
-from bounce_env.report.methods.solids import CHORDS, chords, offset_at, timelines_of
+from bounce_env.report.methods.base import QUICK_STEPS, STEPS, Ball, Method, Player, Setting
+from bounce_env.report.methods.solids import CHORDS, chords, comes_from_left, rates_in_step, timelines_of
 from bounce_env.report.problems import Problem
-from bounce_env.report.truths import Start
+from bounce_env.report.truths import FRAMES, Start
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, moves
 
 BALL, SURFACE = 1, 2
@@ -82,7 +80,7 @@ class PymunkScene:
 
     def _heed_kicks_gates_and_cap(self) -> None:
         elements: tuple[Any, ...] = self.scene.elements
-        gates = {shape for shape, i in self.element_of.items() if getattr(elements[i], "one_way", False)}
+        gates = {shape: elements[i] for shape, i in self.element_of.items() if getattr(elements[i], "one_way", False)}
         kicks = {shape: elements[i] for shape, i in self.element_of.items() if elements[i].kick > 0.0}
         cap = self.scene.max_speed
         last_kick: dict[int, float] = {}
@@ -91,7 +89,7 @@ class PymunkScene:
         def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
             shape = arbiter.shapes[1]
             if shape in gates:
-                arbiter.process_collision = self._comes_from_left(shape)
+                arbiter.process_collision = comes_from_left(gates[shape], *self.ball.position, *self.ball.velocity)
             approach[shape] = self.ball.velocity.dot(arbiter.normal)
 
         def post_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
@@ -107,13 +105,6 @@ class PymunkScene:
 
         if gates or kicks or cap is not None:
             self.space.on_collision(BALL, SURFACE, pre_solve=pre_solve, post_solve=post_solve)
-
-    def _comes_from_left(self, gate: pymunk.Segment) -> bool:
-        (x0, y0), (x1, y1) = gate.a, gate.b
-        (x, y), (vx, vy) = self.ball.position, self.ball.velocity
-        left = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
-        closes = (x1 - x0) * vy - (y1 - y0) * vx
-        return bool(left > 0.0 and closes < 0.0)
 
 
 def _shapes(body: pymunk.Body, e: Any) -> list[pymunk.Shape]:
@@ -154,6 +145,11 @@ class PymunkPlayer(Player):
         self._peer.ball.position, self._peer.ball.velocity = start.position, start.velocity
         self._step = 0
 
+    def watch(self) -> None:
+        """Note what begins to be touched."""
+        self.struck = []
+        self._peer.watch(self.struck.append)
+
     def go(self, frames: int) -> None:
         """Step in a Python loop, as its users do."""
         step, dt, steer = self._peer.step, self._dt, self._timelines is not None
@@ -165,27 +161,17 @@ class PymunkPlayer(Player):
     def _steer(self) -> None:
         """Give each part the velocity with which it is at the step's end where it has to be."""
         assert self._timelines is not None
-        now = self._step * self._dt
+        rates = rates_in_step(self._scene, self._timelines, self._step * self._dt, self._dt)
         self._step += 1
-        for m, body in enumerate(self._peer.parts):
-            part = self._scene.parts[m][1]
-            rate = (offset_at(self._timelines, m, now + self._dt)[0] - offset_at(self._timelines, m, now)[0]) / self._dt
-            if isinstance(part, Flipper):
-                body.angular_velocity = rate if part.active_angle > part.rest_angle else -rate
+        for body, (turns, rate) in zip(self._peer.parts, rates, strict=True):
+            if turns:
+                body.angular_velocity = rate
             else:
                 body.velocity = (rate, 0.0)
 
-    def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
-        """Step from frame to frame, with a callback at each touch."""
-        self.begin(start)
-        struck: list[int] = []
-        self._peer.watch(struck.append)
-        now, places = 0, []
-        for frame in frames.tolist():
-            self.go(frame - now)
-            now = frame
-            places.append(tuple(self._peer.ball.position))
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck), tuple(self._peer.ball.velocity))
+    def ball(self) -> Ball:
+        """Return the ball."""
+        return (*self._peer.ball.position, *self._peer.ball.velocity)
 
 
 class Pymunk(Method):
@@ -194,10 +180,6 @@ class Pymunk(Method):
     name, label = "pymunk", f"pymunk {pymunk.version}"
     settings, quick = STEPS, QUICK_STEPS
     note = f"collision_slop 0, collision_bias 0, no friction; arcs of {CHORDS} chords a circle"
-
-    def why_not(self, problem: Problem) -> str | None:
-        """Return None: it plays all."""
-        return None
 
     def player(self, problem: Problem, setting: Setting, top_speed: float) -> Player:
         """Get ready."""

@@ -10,10 +10,11 @@ import scipy
 from scipy.integrate import solve_ivp
 
 from bounce_env.report.methods import solids
-from bounce_env.report.methods.base import FRAMES, Method, Player, Setting, Trace
-from bounce_env.report.methods.solids import gap_to, solids_of, timelines_of
+from bounce_env.report.methods.base import Ball, Method, Player, Setting
+from bounce_env.report.methods.solids import gap_to, is_behind_gate, solids_of, timelines_of
 from bounce_env.report.problems import Problem
-from bounce_env.report.truths import Start
+from bounce_env.report.truths import FRAMES, Start
+from bounce_env.scene import Arc
 
 Floats = npt.NDArray[np.float64]
 
@@ -48,16 +49,14 @@ class ScipyPlayer(Player):
     def begin(self, start: Start) -> None:
         """Put the ball at its start."""
         self._now, self._ball = 0.0, np.array([*start.position, *start.velocity])
-        self._struck: list[int] = []
-        self._found = 0
+        self._frame = self._found = 0
         self._kicked: dict[int, float] = {}
         self._given_up = False
 
     def go(self, frames: int) -> None:
         """Integrate from impact to impact."""
-        self._integrate(frames / FRAMES)
-
-    def _integrate(self, end: float) -> None:
+        self._frame += frames
+        end = self._frame / FRAMES
         while self._now < end and not self._given_up:
             until = min([end, *(t for t in self._changes if t > self._now)])
             run = solve_ivp(
@@ -75,8 +74,7 @@ class ScipyPlayer(Player):
         x, y, vx, vy = self._ball.tolist()
         _, nx, ny, ux, uy = gap_to(row, self._timelines, x, y, self._scene.ball.radius, self._now)
         approach = -((vx - ux) * nx + (vy - uy) * ny)
-        ex, ey = row[solids.BX] - row[solids.AX], row[solids.BY] - row[solids.AY]
-        if approach <= 0.0 or (row[solids.ONE_WAY] > 0.0 and nx * -ey + ny * ex <= 0.0):
+        if approach <= 0.0 or is_behind_gate(row, nx, ny):
             return
         element = int(row[solids.ELEMENT])
         rebound = row[solids.B] * approach
@@ -89,17 +87,15 @@ class ScipyPlayer(Player):
         if cap is not None and speed > cap:
             velocity *= cap / speed
         self._ball[2:] = velocity
-        self._struck.append(element)
+        if self.struck is not None:
+            self.struck.append(element)
 
-    def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
-        """Integrate from frame to frame; NaN from where it was given up."""
-        self.begin(start)
-        places = []
-        for frame in frames.tolist():
-            self._integrate(frame / FRAMES)
-            places.append((math.nan, math.nan) if self._given_up else self._ball[:2].copy())
-        _, _, vx, vy = self._ball.tolist()
-        return Trace(np.array(places).reshape(-1, 2), tuple(self._struck), (vx, vy))
+    def ball(self) -> Ball:
+        """Return the ball; NaN where it was given up."""
+        if self._given_up:
+            return (math.nan,) * 4
+        x, y, vx, vy = self._ball.tolist()
+        return x, y, vx, vy
 
 
 class Scipy(Method):
@@ -108,10 +104,7 @@ class Scipy(Method):
     name, label = "scipy", f"scipy {scipy.__version__} with events"
     settings, quick = TOLERANCES, (TOLERANCES[2],)
     note = f"DOP853, no step longer than the ball's radius at the greatest speed, given up after {MOST_EVENTS} impacts"
-
-    def why_not(self, problem: Problem) -> str | None:
-        """Return None: it plays all."""
-        return None
+    slower = 4000
 
     def player(self, problem: Problem, setting: Setting, top_speed: float) -> Player:
         """Get ready."""
@@ -122,19 +115,32 @@ class ByHandPlayer(Player):
     """The angle on the circle as an ODE; where the ball lets go, its parabola."""
 
     def __init__(self, problem: Problem, tolerance: float) -> None:
-        self._radius, self._pull = 1.0 - problem.scene.ball.radius, -problem.scene.gravity[1]
-        self._tolerance, self._lets_go = tolerance, problem.name == "loop"
+        (arc,) = problem.scene.elements
+        assert isinstance(arc, Arc)
+        self._radius, self._pull = arc.radius - problem.scene.ball.radius, -problem.scene.gravity[1]
+        self._tolerance, self._lets_go = tolerance, arc.closed
 
     def begin(self, start: Start) -> None:
         """Put the ball at its start."""
         x, y = start.position
-        self._start = (math.atan2(x, -y), start.velocity[0] / self._radius)
+        self._state = np.array([math.atan2(x, -y), start.velocity[0] / self._radius])
+        self._flight: Ball | None = None
+
+    def watch(self) -> None:
+        """Note nothing: it strikes nothing."""
 
     def go(self, frames: int) -> None:
-        """Integrate."""
-        self._places(np.array([frames]))
+        """Integrate the angle; once the ball has let go, fly on."""
+        seconds = frames / FRAMES
+        if self._flight is None:
+            seconds -= self._slide(seconds)
+        if self._flight is not None:
+            x, y, vx, vy = self._flight
+            fall = self._pull * seconds
+            self._flight = (x + vx * seconds, y + (vy - 0.5 * fall) * seconds, vx, vy - fall)
 
-    def _places(self, frames: npt.NDArray[np.int64]) -> Floats:
+    def _slide(self, seconds: float) -> float:
+        """Slide on for so long, or until the circle does not press any more; returns for how long."""
         r, g = self._radius, self._pull
 
         def press(t: float, y: Floats) -> float:
@@ -142,25 +148,26 @@ class ByHandPlayer(Player):
 
         press.terminal, press.direction = True, -1.0  # type: ignore[attr-defined]
         run: Any = solve_ivp(
-            lambda t, y: (y[1], -g / r * math.sin(y[0])), (0.0, frames[-1] / FRAMES), self._start, method="DOP853",
-            rtol=self._tolerance, atol=self._tolerance, dense_output=True, events=press if self._lets_go else None,
+            lambda t, y: (y[1], -g / r * math.sin(y[0])), (0.0, seconds), self._state, method="DOP853",
+            rtol=self._tolerance, atol=self._tolerance, events=press if self._lets_go else None,
         )  # fmt: skip
-        end, (angle, rate) = run.t[-1], run.y[:, -1]
-        vx, vy = r * rate * math.cos(angle), r * rate * math.sin(angle)
-        places = []
-        for t in (frames / FRAMES).tolist():
-            if t <= end:
-                angle_then = float(run.sol(t)[0])
-                places.append((r * math.sin(angle_then), -r * math.cos(angle_then)))
-            else:
-                s = t - end
-                places.append((r * math.sin(angle) + vx * s, -r * math.cos(angle) + vy * s - 0.5 * g * s * s))
-        return np.array(places)
+        self._state = run.y[:, -1]
+        if self._lets_go and len(run.t_events[0]):
+            self._flight = self._on_circle()
+        return float(run.t[-1])
 
-    def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
-        """Integrate, with the places at the frames."""
-        self.begin(start)
-        return Trace(self._places(frames), None)
+    def _on_circle(self) -> Ball:
+        (angle, rate), r = self._state.tolist(), self._radius
+        return (
+            r * math.sin(angle),
+            -r * math.cos(angle),
+            r * rate * math.cos(angle),
+            r * rate * math.sin(angle),
+        )
+
+    def ball(self) -> Ball:
+        """Return the ball."""
+        return self._on_circle() if self._flight is None else self._flight
 
 
 class ByHand(Method):

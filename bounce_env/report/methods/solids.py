@@ -12,12 +12,11 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.report.truths import Command
+from bounce_env.report.truths import FRAMES, Command
 from bounce_env.scene import Arc, Bumper, Field, Flipper, Scene, Sensor, Wall
 
 Floats = npt.NDArray[np.float64]
 
-FRAMES = 60
 CHORDS = 1440
 """How many straight pieces a whole circle is made of, for engines that have no hollow one."""
 
@@ -100,6 +99,27 @@ def _moved(part: Any, at: float, rate: float, seconds: float) -> tuple[float, fl
     return (at + rate * seconds, None) if seconds < room else ((span if rate > 0.0 else 0.0), room)
 
 
+def comes_from_left(wall: Wall, x: float, y: float, vx: float, vy: float) -> bool:
+    """Return whether a ball comes to a one-way wall from the side on which it bounces."""
+    (x0, y0), (x1, y1) = wall.start, wall.end
+    left = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
+    closes = (x1 - x0) * vy - (y1 - y0) * vx
+    return left > 0.0 and closes < 0.0
+
+
+def rates_in_step(scene: Scene, timelines: Floats, now: float, dt: float) -> list[tuple[bool, float]]:
+    """Return how each part has to move to be at a step's end where it has to be: whether it turns, and how fast.
+
+    [rad/s] counter-clockwise, or [m/s] along x.
+    """
+    rates = []
+    for m, (_, part) in enumerate(scene.parts):
+        rate = (offset_at(timelines, m, now + dt)[0] - offset_at(timelines, m, now)[0]) / dt
+        turns = isinstance(part, Flipper)
+        rates.append((turns, -rate if isinstance(part, Flipper) and part.active_angle < part.rest_angle else rate))
+    return rates
+
+
 @numba.njit(cache=True)
 def offset_at(timelines: Floats, part: int, t: float) -> tuple[float, float]:
     """Return where a part is on its way at a time, and its rate."""
@@ -148,6 +168,13 @@ def gap_to(
         touched_x, touched_y = share * ex + solid[RADIUS] * nx, share * ey + solid[RADIUS] * ny
         ux, uy = -turning * touched_y, turning * touched_x
     return distance - solid[RADIUS] - ball_radius, nx, ny, ux, uy
+
+
+@numba.njit(cache=True)
+def is_behind_gate(solid: Floats, nx: float, ny: float) -> bool:
+    """Return whether a ball, with the normal to it, is on the side of a one-way wall that lets it pass."""
+    ex, ey = solid[BX] - solid[AX], solid[BY] - solid[AY]
+    return solid[ONE_WAY] > 0.0 and nx * -ey + ny * ex <= 0.0
 
 
 @numba.njit(cache=True)

@@ -10,9 +10,10 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.report.methods.base import FRAMES, QUICK_STEPS, STEPS, Method, Player, Setting, Trace
+from bounce_env.report.methods.base import QUICK_STEPS, STEPS, Method, Player, Setting
+from bounce_env.report.methods.base import Ball as Moving
 from bounce_env.report.problems import Problem
-from bounce_env.report.truths import Start
+from bounce_env.report.truths import FRAMES, Start
 from bounce_env.scene import Ball, Scene, Wall
 
 Floats = npt.NDArray[np.float64]
@@ -138,46 +139,53 @@ def _crossing(p: Point, d: Point, q: Point, e: Point) -> Point:
     return p[0] + share * d[0], p[1] + share * d[1]
 
 
+class TutorialPoint:
+    """The tutorial's point in a scene of walls, a disc among walls moved in from where it is. ball: x, y, vx, vy."""
+
+    def __init__(self, scene: Scene, position: Point, velocity: Point) -> None:
+        self._scene = scene if scene.ball.radius == 0.0 else points_scene(scene, position)
+        walls = [(*w.start, *w.end, w.b, w.f) for w in self._scene.elements if isinstance(w, Wall)]
+        self._walls, self._sides = np.array(walls).reshape(-1, 6), np.ones(len(walls))
+        self.ball = np.array([*position, *velocity])
+        set_sides(self._walls, *position, self._sides)
+
+    def tick(self, dt: float, count: int, struck: Floats, *, recheck: bool = True) -> int:
+        """Take `count` ticks of `dt` seconds; returns how many strikes are in `struck`. NaN where one has no end."""
+        numbers = np.array([dt, *self._scene.gravity, self._scene.ball.b, self._scene.ball.f])
+        strikes = int(ticks(self._walls, numbers, self.ball, self._sides, count, recheck, struck))
+        if strikes < 0:
+            self.ball[:] = math.nan
+        return max(strikes, 0)
+
+
 class TutorialPlayer(Player):
     """The stepper on one problem."""
 
     def __init__(self, problem: Problem, per_second: int, *, recheck: bool) -> None:
         self._scene, self._recheck = problem.scene, recheck
         self._each, self._dt = per_second // FRAMES, 1.0 / per_second
-        self._ball, self._struck = np.zeros(4), np.zeros(_MOST_STRIKES)
+        self._strikes = np.zeros(_MOST_STRIKES)
 
     def begin(self, start: Start) -> None:
-        """Put the point at its start, among walls moved in from where it is."""
-        scene = points_scene(self._scene, start.position)
-        self._walls = np.array([(*w.start, *w.end, w.b, w.f) for w in scene.elements if isinstance(w, Wall)])
-        self._numbers = np.array([self._dt, *scene.gravity, scene.ball.b, scene.ball.f])
-        self._ball[:] = *start.position, *start.velocity
-        self._sides = np.ones(len(self._walls))
-        set_sides(self._walls, *start.position, self._sides)
+        """Put the point at its start."""
+        self._point = TutorialPoint(self._scene, *start)
 
     def go(self, frames: int) -> None:
         """Take all ticks in one compiled call."""
-        self._ticks(frames)
+        count = self._point.tick(self._dt, frames * self._each, self._strikes, recheck=self._recheck)
+        if self.struck is not None:
+            self.struck += self._strikes[:count].astype(int).tolist()
 
-    def _ticks(self, frames: int) -> int:
-        ways = (self._walls, self._numbers, self._ball, self._sides)
-        return int(ticks(*ways, frames * self._each, self._recheck, self._struck))
-
-    def trace(self, start: Start, frames: npt.NDArray[np.int64]) -> Trace:
-        """Step from frame to frame."""
-        self.begin(start)
-        now, places, struck = 0, [], list[int]()
-        for frame in frames.tolist():
-            count = self._ticks(frame - now)
-            struck += self._struck[: max(count, 0)].astype(int).tolist()
-            places.append(self._ball[:2].copy() if count >= 0 else np.full(2, np.nan))
-            now = frame
-        _, _, vx, vy = self._ball.tolist()
-        return Trace(np.array(places).reshape(-1, 2), tuple(struck), (vx, vy))
+    def ball(self) -> Moving:
+        """Return the point."""
+        x, y, vx, vy = self._point.ball.tolist()
+        return x, y, vx, vy
 
 
 class Tutorial(Method):
     """The tutorial's stepper. recheck: its improved version."""
+
+    slower = 10
 
     def __init__(self, *, recheck: bool) -> None:
         self.name = "tutorial_recheck" if recheck else "tutorial_once"

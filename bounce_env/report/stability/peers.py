@@ -6,9 +6,9 @@ from importlib import import_module
 
 import numpy as np
 
-from bounce_env.report.methods.tutorial import points_scene, set_sides, ticks
+from bounce_env.report.methods.tutorial import TutorialPoint
 from bounce_env.report.stability.case import Case, Point
-from bounce_env.scene import Field, Scene, SceneError, Sensor, Wall
+from bounce_env.scene import Field, SceneError, Sensor, Wall
 
 PER_SECOND = 960
 """Steps a second of all of them, or a few more, so that a whole number of them makes the case's duration."""
@@ -113,20 +113,15 @@ def _box2d(case: Case) -> Point:
             for _ in range(count):
                 peer.step(dt, now)
                 now += dt
-    x, y = peer.ball.position
-    return float(x) / scale, float(y) / scale
+    x, y, _, _ = peer.now()
+    return x, y
 
 
 def _tutorial(case: Case) -> Point:
-    scene: Scene = case.scene if case.scene.ball.radius == 0.0 else points_scene(case.scene, case.position)
-    walls = np.array([(*w.start, *w.end, w.b, w.f) for w in scene.elements if isinstance(w, Wall)]).reshape(-1, 6)
-    ball, sides = np.array([*case.position, *case.velocity]), np.ones(len(walls))
-    set_sides(walls, *case.position, sides)
+    point = TutorialPoint(case.scene, case.position, case.velocity)
     (seconds,) = case.script
     assert not isinstance(seconds, tuple)
     count, dt = _steps(seconds)
-    numbers = np.array([dt, *scene.gravity, scene.ball.b, scene.ball.f])
-    if ticks(walls, numbers, ball, sides, count, True, np.zeros(1)) < 0:
-        return math.nan, math.nan
-    x, y = ball[:2].tolist()
+    point.tick(dt, count, np.zeros(1))
+    x, y, _, _ = point.ball.tolist()
     return x, y

@@ -14,10 +14,8 @@ import numpy as np
 from bounce_env.engine import WorldBatch
 from bounce_env.engine.placement import part_cores_at_start, place_clear
 from bounce_env.report.model import FeatureCostRow, FeatureRow
-from bounce_env.scene import ALL_FEATURES, Ball, Feature, Scene, load_scene
-
-GENERAL = ALL_FEATURES - {Feature.SEVERAL_BALLS}
-"""All features of one ball: on these every scene of discs shares one kernel."""
+from bounce_env.scene import Ball, Feature, Scene, load_scene
+from bounce_env.scene.features import ALL_FOR_ONE_BALL
 
 BASE = "elastic_box"
 """The built-in scene with fewest features, on which each other one is forced."""
@@ -30,14 +28,14 @@ CALM = 2.0**-40
 def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
     """Measure a built-in scene. pieces: how many are timed, of which the least counts. compiled: compiles it afresh."""
     scene = load_scene(name)
-    lean, general = (_costs(scene, features, pieces) for features in (frozenset[Feature](), GENERAL))
+    lean, general = (_costs(scene, features, pieces) for features in (frozenset[Feature](), ALL_FOR_ONE_BALL))
     sizes: list[tuple[float | None, int | None]] = [(None, None), (None, None)]
     if compiled:
-        sizes = [_compiling(scene.features), _compiling(scene.features | GENERAL)]
+        sizes = [_compiling(scene.features), _compiling(scene.features | ALL_FOR_ONE_BALL)]
     return FeatureRow(
         scene=name,
         has=tuple(sorted(map(str, scene.features))),
-        left_out=tuple(sorted(map(str, GENERAL - scene.features))),
+        left_out=tuple(sorted(map(str, ALL_FOR_ONE_BALL - scene.features))),
         lean_step=lean[0],
         general_step=general[0],
         lean_bounce=lean[1],

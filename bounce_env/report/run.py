@@ -16,7 +16,7 @@ from bounce_env.extras import version
 from bounce_env.files import hash_of_files, replacing
 from bounce_env.machine import processor
 from bounce_env.report.errors import Plan, jobs
-from bounce_env.report.features import BASE, GENERAL, measure_cost, measure_features
+from bounce_env.report.features import BASE, measure_cost, measure_features
 from bounce_env.report.methods import all_methods
 from bounce_env.report.methods.base import Method
 from bounce_env.report.model import Report, Row, from_json, part_of, to_json
@@ -26,6 +26,7 @@ from bounce_env.report.stability.cases import CASES
 from bounce_env.report.stability.measure import measure_case
 from bounce_env.report.stability.mechanisms import MECHANISMS, tried_cases
 from bounce_env.scene import ALL_FEATURES, builtin_scenes, load_scene
+from bounce_env.scene.features import ALL_FOR_ONE_BALL
 
 PARTS = ("error", "stability", "features", "speed")
 """What `report` can be asked for, besides all."""
@@ -56,7 +57,7 @@ class Options:
 def planned(options: Options) -> tuple[list[Job], tuple[Method, ...]]:
     """Return all jobs, and the methods that they are of."""
     # Quick, all problems run on the one kernel that has every feature: nothing has to be compiled for a scene.
-    methods = all_methods(GENERAL if options.quick else ())
+    methods = all_methods(ALL_FOR_ONE_BALL if options.quick else ())
     found: list[Job] = []
     if "error" in options.parts:
         found += [Job("error", name, partial(f, *a)) for name, f, a in jobs(*_chosen(options, methods), _plan(options))]

@@ -36,6 +36,9 @@ class Feature(StrEnum):
 ALL_FEATURES = frozenset(Feature) - {Feature.BALL_RADIUS}
 """All that can be forced on: with these every scene runs on one kernel for discs and one for points."""
 
+ALL_FOR_ONE_BALL = ALL_FEATURES - {Feature.SEVERAL_BALLS}
+"""The same where no scene is played with several balls: what lets balls lie on each other doubles the compiling."""
+
 _BRING = {
     Feature.ONE_WAY_WALLS: (Feature.WALLS,),
     Feature.FIELDS: (Feature.GRAVITY,),

@@ -1,8 +1,8 @@
 """What a case of the stability suite is, how it is played and how its outcome is judged.
 
 A case is a scene, a start, a script of durations and commands, and what must come of it: which rows the ledger has,
-and numbers with the place that the right answer comes from. It is written once, in one of the `standing_*` modules, and
-used by the tests and by the table for the report.
+and numbers with the place that the right answer comes from. It is written once, in one of the modules of `cases`, for the
+tests and for the report.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ import numpy as np
 
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, OK, OUT
 from bounce_env.engine.world import World
-from bounce_env.scene import ALL_FEATURES, Feature, Scene
+from bounce_env.scene import Scene
+from bounce_env.scene.features import ALL_FOR_ONE_BALL
 
 Point: TypeAlias = tuple[float, float]
 Step: TypeAlias = float | tuple[Any, ...]
@@ -148,8 +149,6 @@ def between(what: str, seen: Callable[[Run], float], low: float, high: float) ->
 
 # ---- playing
 
-ALL_BUT_SEVERAL_BALLS = ALL_FEATURES - {Feature.SEVERAL_BALLS}
-
 
 def new_world(scene: Scene, *, balls: int = 1, lean: bool = False) -> World:
     """A world of the scene, in the kernel that has every feature of one ball, or in the scene's own.
@@ -157,7 +156,7 @@ def new_world(scene: Scene, *, balls: int = 1, lean: bool = False) -> World:
     There is one kernel for each set of features, and it takes long to compile. With the one that has them all, the
     whole suite needs one for discs and one for points; a soak runs it in the lean ones, too.
     """
-    return World(scene, balls, features=() if lean else ALL_BUT_SEVERAL_BALLS)
+    return World(scene, balls, features=() if lean else ALL_FOR_ONE_BALL)
 
 
 def play(case: Case, *, pieces: int = 1, restored: bool = False, lean: bool = False, watch: Watch | None = None) -> Run:

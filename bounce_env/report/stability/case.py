@@ -1,8 +1,8 @@
 """What a case of the stability suite is, how it is played and how its outcome is judged.
 
 A case is a scene, a start, a script of durations and commands, and what must come of it: which rows the ledger has,
-and numbers with the place that the right answer comes from. It is written once, in one of the modules of `cases`, for the
-tests and for the report.
+and numbers with the place that the right answer comes from. It is written once, in one of the modules of `cases`,
+for the tests and for the report.
 """
 
 from __future__ import annotations

@@ -172,4 +172,4 @@ def _order_kept(which: Problem, method: Method, setting: Setting, plan: Plan) ->
         for start, truth in zip(starts, truths, strict=True)
     ]
     there_are = statistics.median(len(truth.order or ()) for truth in truths)
-    return {"right_bounces": statistics.median(counts), "of": int(there_are)}
+    return {"right_bounces": float(statistics.median(counts)), "of": int(there_are)}

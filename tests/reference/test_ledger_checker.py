@@ -186,10 +186,18 @@ def test_the_runs_have_rows_of_every_kind():
 # ---- what the engine does is accepted
 
 
+def flights_of(run):
+    """Return a run up to where a curve first holds the ball, and whether that is less than all of it."""
+    ledger, end = before_a_slide_on_a_curve(run.scene, run.ledger, run.end)
+    commands = tuple(c for c in run.commands if c[0] < end.time)
+    return run._replace(ledger=ledger, end=end, commands=commands), len(ledger) < len(run.ledger)
+
+
 @pytest.mark.parametrize("name", builtin_scenes())
 def test_builtin_scenes_are_played_right(name):
     scene = load_scene(name)
     x0, y0, x1, y1 = scene.bounds
+    y1 += y1 == y0  # above a floor alone
     rng = np.random.default_rng(1)
     tried = 0
     while tried < soak_count(2, 200):
@@ -199,7 +207,9 @@ def test_builtin_scenes_are_played_right(name):
             run = play(scene, place, (float(speed * math.cos(angle)), float(speed * math.sin(angle))), 10.0)
         except ValueError:  # the ball would overlap an element
             continue
+        run, cut = flights_of(run)
         assert run.problems() == []
+        assert not cut or name in ("bowl", "loop", "pinball", "zeno_drop")  # off the floor round its end
         tried += 1
 
 
@@ -215,9 +225,7 @@ def test_random_standing_scenes_are_played_right():
     cut = 0
     for seed in range(soak_count(150, 20_000)):
         script = standing(seed)
-        run = play(script.scene, script.position, script.velocity, 4.0, script.commands)
-        ledger, end = before_a_slide_on_a_curve(run.scene, run.ledger, run.end)
-        cut += len(ledger) < len(run.ledger)
-        commands = tuple(c for c in run.commands if c[0] < end.time)
-        assert run._replace(ledger=ledger, end=end, commands=commands).problems() == [], seed
+        run, is_cut = flights_of(play(script.scene, script.position, script.velocity, 4.0, script.commands))
+        cut += is_cut
+        assert run.problems() == [], seed
     assert cut <= 0.2 * soak_count(150, 20_000)

@@ -1,6 +1,9 @@
-"""Errors of the engine, made worse on purpose: `python -m tests.report.worsened HOW PROBLEM...`, with the JIT off.
+"""What the report says of an engine that was made worse on purpose, with the JIT off.
 
-It is patched before anything of it imports anything else, so that every user of what is patched sees the patch.
+`python -m tests.report.worsened HOW errors PROBLEM...` prints an error for each problem,
+`python -m tests.report.worsened HOW verdicts CASE...` a verdict for each case of the stability suite.
+
+The engine is patched before anything of it imports anything else, so that every user of what is patched sees the patch.
 """
 
 import json
@@ -13,8 +16,8 @@ from bounce_env.scene import features, spec
 
 
 def touch_from_far() -> None:
-    """Take what is micrometres away for touched."""
-    tolerances.ULPS_OF_LENGTH *= 1e9
+    """Take what is nanometres away for touched: a tolerance times 10^6."""
+    tolerances.ULPS_OF_LENGTH *= 1e6
 
 
 def find_hits_to_ten_digits() -> None:
@@ -52,6 +55,19 @@ def errors(names: list[str]) -> Iterator[float]:
         yield max(error_of(player.trace(start, t.frames), t, chaotic=which.chaotic) for start, t in starts)
 
 
+def verdicts(names: list[str]) -> Iterator[str]:
+    """Return what the report's row of each case says, as the case is given."""
+    from bounce_env.report.stability.images import Image
+    from bounce_env.report.stability.measure import measure_case
+    from bounce_env.report.stability.mechanisms import MECHANISMS, tried_cases
+
+    cases = {case.name: (which, case) for which in MECHANISMS for case, _, _ in tried_cases(which)}
+    for name in names:
+        mechanism, case = cases[name]
+        yield measure_case(mechanism, case, Image(), name, most_steps=0).verdict
+
+
 if __name__ == "__main__":
-    globals()[sys.argv[1]]()
-    sys.stdout.write(json.dumps(list(errors(sys.argv[2:]))))
+    how, what, *names = sys.argv[1:]
+    globals()[how]()
+    sys.stdout.write(json.dumps(list({"errors": errors, "verdicts": verdicts}[what](names))))

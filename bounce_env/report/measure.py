@@ -11,7 +11,7 @@ from bounce_env.report.methods.base import Player, Trace
 from bounce_env.report.model import Spread
 from bounce_env.report.truths import FRAMES, Start, Truth
 
-ENOUGH, LEAST_STARTS = 1.0, 3
+ENOUGH, LEAST_STARTS = 0.3, 3
 """CPU seconds after which no more starts are timed, and how many are at least."""
 
 

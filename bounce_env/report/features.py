@@ -6,8 +6,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Collection
-from functools import cache
+from collections.abc import Callable, Collection, Sequence
+from functools import cache, partial
 
 import numpy as np
 
@@ -24,11 +24,14 @@ WORLDS = 256
 CALM = 2.0**-40
 """A step so short that nothing happens in it [s]."""
 
+CALM_STEPS = 400
+"""So many make a piece of milliseconds."""
+
 
 def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
     """Measure a built-in scene. pieces: how many are timed, of which the least counts. compiled: compiles it afresh."""
     scene = load_scene(name)
-    lean, general = (_costs(scene, features, pieces) for features in (frozenset[Feature](), ALL_FOR_ONE_BALL))
+    lean, general = _costs(scene, [frozenset(), ALL_FOR_ONE_BALL], pieces)
     sizes: list[tuple[float | None, int | None]] = [(None, None), (None, None)]
     if compiled:
         sizes = [_compiling(scene.features), _compiling(scene.features | ALL_FOR_ONE_BALL)]
@@ -50,39 +53,47 @@ def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
 def measure_cost(feature: Feature, *, pieces: int) -> FeatureCostRow:
     """Measure what a feature costs a scene that does not need it, forced on."""
     scene = load_scene(BASE)
-    (lean_step, lean_bounce), (step, bounce) = (_costs(scene, frozenset(f), pieces) for f in ((), (feature,)))
+    (lean_step, lean_bounce), (step, bounce) = _costs(scene, [frozenset(), frozenset({feature})], pieces)
     assert lean_bounce is not None
     assert bounce is not None
     return FeatureCostRow(feature.value, BASE, step, lean_step, bounce, lean_bounce)
 
 
-def _costs(scene: Scene, features: frozenset[Feature], pieces: int) -> tuple[float, float | None]:
-    """Return ns of CPU of a calm step, and of a bounce."""
-    batch = WorldBatch(scene, WORLDS, features=features)
+def _costs(scene: Scene, kernels: Sequence[frozenset[Feature]], pieces: int) -> list[tuple[float, float | None]]:
+    """Return ns of CPU of a calm step, and of a bounce, of the scene on kernels with these features forced on.
+
+    Of each the least of so many pieces, taken in turns: a processor that others use, too, is fast and slow by turns.
+    """
+    batches = [WorldBatch(scene, WORLDS, features=features) for features in kernels]
     places, speeds = _starts(scene)
-    batch.reset(position=places, velocity=speeds)
-    batch.advance(CALM)
-    step = _least(lambda: batch.advance(CALM), pieces, repeats=20) / WORLDS
-    bounces = []
-    for _ in range(max(3, pieces // 10)):
+    for batch in batches:
         batch.reset(position=places, velocity=speeds)
-        before = time.process_time_ns()
-        batch.advance(1.0)
-        spent = time.process_time_ns() - before
-        bounces.append(spent / max(1, int(batch.counts.bounces.sum())))
-    few = int(batch.counts.bounces.sum()) < WORLDS // 4
-    return step, None if few else min(bounces)
+        batch.advance(CALM)
+    steps = [min(found) for found in _in_turns([partial(_calm_step, batch) for batch in batches], pieces)]
+    bounces = _in_turns([partial(_bounce, batch, places, speeds) for batch in batches], max(5, pieces // 5))
+    few = int(batches[0].counts.bounces.sum()) < WORLDS // 4
+    return [(step, None if few else min(found)) for step, found in zip(steps, bounces, strict=True)]
 
 
-def _least(act: Callable[[], object], pieces: int, repeats: int) -> float:
-    """Return the least ns of CPU of one call, over pieces of so many."""
-    found = []
-    for _ in range(pieces):
-        before = time.process_time_ns()
-        for _ in range(repeats):
-            act()
-        found.append((time.process_time_ns() - before) / repeats)
-    return min(found)
+def _in_turns(measures: Sequence[Callable[[], float]], pieces: int) -> list[list[float]]:
+    """Return what each has measured, so many times."""
+    rounds = [[measure() for measure in measures] for _ in range(pieces)]
+    return [list(found) for found in zip(*rounds, strict=True)]
+
+
+def _calm_step(batch: WorldBatch) -> float:
+    before = time.process_time_ns()
+    for _ in range(CALM_STEPS):
+        batch.advance(CALM)
+    return (time.process_time_ns() - before) / CALM_STEPS / WORLDS
+
+
+def _bounce(batch: WorldBatch, places: np.ndarray, speeds: np.ndarray) -> float:
+    batch.reset(position=places, velocity=speeds)
+    before = time.process_time_ns()
+    batch.advance(1.0)
+    spent = time.process_time_ns() - before
+    return spent / max(1, int(batch.counts.bounces.sum()))
 
 
 def _starts(scene: Scene) -> tuple[np.ndarray, np.ndarray]:

@@ -96,7 +96,7 @@ def _stability_jobs(options: Options) -> list[Job]:
 
 def _feature_jobs(options: Options) -> list[Job]:
     names = QUICK_FEATURES if options.quick else builtin_scenes()
-    pieces = 20 if options.quick else 60
+    pieces = 20 if options.quick else 100
     return [
         Job("features", f"features {name}", partial(measure_features, name, pieces=pieces, compiled=not options.quick))
         for name in names

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from bounce_env.report.model import ErrorRow, FeatureRow, SpeedRow
 
@@ -105,15 +105,16 @@ def features_picture(rows: Sequence[FeatureRow]) -> bytes:
         axes.plot(general, k, marker="s", color="#c0392b", markersize=7, linestyle="none")
         if k == len(kept) - 1:
             first, second = ("right", "left") if lean <= general else ("left", "right")
-            for x, text, side, colour in ((lean, " own ", first, "#0b6e4f"), (general, " general ", second, "#c0392b")):
-                axes.text(x, k + 0.28, text, ha=side, va="bottom", color=colour, fontsize=9.5)
+            for x, name, side, colour in ((lean, "own", first, "#0b6e4f"), (general, "general", second, "#c0392b")):
+                axes.text(x, k + 0.28, f" {name} kernel ", ha=side, va="bottom", color=colour, fontsize=9.5)
     axes.set_yticks(range(len(kept)), [row.scene for row in reversed(kept)])
     axes.set_ylim(-0.6, len(kept) - 0.1)
     axes.set_xscale("log")
     left, right = axes.get_xlim()
     axes.set_xlim(left * (left / right) ** 0.08, right)  # room for the first label
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel("CPU time for a bounce, its flight included [ns]")
     return _png(figure)
 

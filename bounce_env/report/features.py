@@ -8,6 +8,7 @@ import tempfile
 import time
 from collections.abc import Callable, Collection, Sequence
 from functools import cache, partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,35 +29,65 @@ CALM_STEPS = 400
 """So many make a piece of milliseconds."""
 
 
+class Kernel(NamedTuple):
+    """What a scene costs on a kernel: ns of a calm step and of a bounce, seconds of compiling, bytes of its code."""
+
+    step: float
+    bounce: float | None
+    seconds: float | None
+    size: int | None
+
+
 def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
     """Measure a built-in scene. pieces: how many are timed, of which the least counts. compiled: compiles it afresh."""
-    scene = load_scene(name)
-    lean, general = _costs(scene, [frozenset(), ALL_FOR_ONE_BALL], pieces)
-    sizes: list[tuple[float | None, int | None]] = [(None, None), (None, None)]
-    if compiled:
-        sizes = [_compiling(scene.features), _compiling(scene.features | ALL_FOR_ONE_BALL)]
+    lean, general = _kernels(name, [frozenset(), ALL_FOR_ONE_BALL], pieces, compiled=compiled)
+    has = load_scene(name).features
     return FeatureRow(
         scene=name,
-        has=tuple(sorted(map(str, scene.features))),
-        left_out=tuple(sorted(map(str, ALL_FOR_ONE_BALL - scene.features))),
-        lean_step=lean[0],
-        general_step=general[0],
-        lean_bounce=lean[1],
-        general_bounce=general[1],
-        lean_compile=sizes[0][0],
-        general_compile=sizes[1][0],
-        lean_bytes=sizes[0][1],
-        general_bytes=sizes[1][1],
+        has=tuple(sorted(map(str, has))),
+        left_out=tuple(sorted(map(str, ALL_FOR_ONE_BALL - has))),
+        lean_step=lean.step,
+        general_step=general.step,
+        lean_bounce=lean.bounce,
+        general_bounce=general.bounce,
+        lean_compile=lean.seconds,
+        general_compile=general.seconds,
+        lean_bytes=lean.size,
+        general_bytes=general.size,
     )
 
 
 def measure_cost(feature: Feature, *, pieces: int) -> FeatureCostRow:
     """Measure what a feature costs a scene that does not need it, forced on."""
-    scene = load_scene(BASE)
-    (lean_step, lean_bounce), (step, bounce) = _costs(scene, [frozenset(), frozenset({feature})], pieces)
-    assert lean_bounce is not None
-    assert bounce is not None
-    return FeatureCostRow(feature.value, BASE, step, lean_step, bounce, lean_bounce)
+    lean, forced = _kernels(BASE, [frozenset(), frozenset({feature})], pieces, compiled=True)
+    assert lean.bounce is not None
+    assert forced.bounce is not None
+    assert lean.seconds is not None
+    assert forced.seconds is not None
+    assert lean.size is not None
+    assert forced.size is not None
+    return FeatureCostRow(
+        feature=feature.value,
+        scene=BASE,
+        step=forced.step,
+        lean_step=lean.step,
+        bounce=forced.bounce,
+        lean_bounce=lean.bounce,
+        compile=forced.seconds,
+        lean_compile=lean.seconds,
+        bytes=forced.size,
+        lean_bytes=lean.size,
+    )
+
+
+def _kernels(name: str, forced: Sequence[frozenset[Feature]], pieces: int, *, compiled: bool) -> list[Kernel]:
+    """Measure a built-in scene with sets of features forced on, in turns; compiled: in processes of their own."""
+    if not compiled:
+        return [Kernel(step, bounce, None, None) for step, bounce in _costs(load_scene(name), forced, pieces)]
+    has = load_scene(name).features
+    sizes = [_compiling(has | features) for features in forced]
+    costs = _alone("costs", name, str(pieces), *(",".join(sorted(features)) for features in forced))
+    return [Kernel(step, bounce, *size) for (step, bounce), size in zip(costs, sizes, strict=True)]
 
 
 def _costs(scene: Scene, kernels: Sequence[frozenset[Feature]], pieces: int) -> list[tuple[float, float | None]]:
@@ -112,13 +143,22 @@ def _starts(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 @cache
 def _compiling(features: frozenset[Feature]) -> tuple[float, int]:
-    """Compile the kernel in a process and a folder of its own; returns seconds of CPU and bytes of machine code."""
-    with tempfile.TemporaryDirectory() as folder:
-        words = [sys.executable, "-m", "bounce_env.report.features", *features]
-        environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
-        run = subprocess.run(words, capture_output=True, text=True, check=True, env=environment)
-    seconds, size = json.loads(run.stdout)
+    """Compile the kernel in a process of its own; returns seconds of CPU and bytes of machine code."""
+    seconds, size = _alone("compiling", *sorted(features))
     return float(seconds), int(size)
+
+
+@cache
+def _folder() -> "tempfile.TemporaryDirectory[str]":
+    """Where kernels are compiled to: nowhere that there are any before, and gone when this process ends."""
+    return tempfile.TemporaryDirectory(prefix="bounce_env_report_")
+
+
+def _alone(*words: str) -> Any:
+    """Run a part of this module in a process of its own, and return what it prints, read as JSON."""
+    command = [sys.executable, "-m", "bounce_env.report.features", *words]
+    environment = {**os.environ, "NUMBA_CACHE_DIR": _folder().name}
+    return json.loads(subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout)
 
 
 def compile_alone(features: Collection[str]) -> tuple[float, int]:
@@ -135,5 +175,13 @@ def compile_alone(features: Collection[str]) -> tuple[float, int]:
     return seconds, len(compiled.library._get_compiled_object())
 
 
+def _main(what: str, *words: str) -> object:
+    if what == "compiling":
+        return compile_alone(words)
+    name, pieces, *forced = words
+    sets = [frozenset(Feature(feature) for feature in names.split(",") if feature) for names in forced]
+    return _costs(load_scene(name), sets, int(pieces))
+
+
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(compile_alone(sys.argv[1:])))
+    sys.stdout.write(json.dumps(_main(*sys.argv[1:])))

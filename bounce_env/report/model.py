@@ -94,7 +94,8 @@ class FeatureRow:
 class FeatureCostRow:
     """What one feature costs a scene that does not need it: `scene` with it forced on, against `scene` without.
 
-    step, bounce: ns of CPU, as in a FeatureRow; `lean_step` and `lean_bounce` without it.
+    step, bounce: ns of CPU, as in a FeatureRow; compile, bytes: seconds of compiling and machine code. `lean_...`: the
+    same without it.
     """
 
     feature: str
@@ -103,6 +104,10 @@ class FeatureCostRow:
     lean_step: float
     bounce: float
     lean_bounce: float
+    compile: float
+    lean_compile: float
+    bytes: int
+    lean_bytes: int
 
 
 @dataclass(frozen=True)

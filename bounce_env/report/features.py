@@ -100,16 +100,16 @@ def _costs(scene: Scene, kernels: Sequence[frozenset[Feature]], pieces: int) -> 
     for batch in batches:
         batch.reset(position=places, velocity=speeds)
         batch.advance(CALM)
-    steps = [min(found) for found in _in_turns([partial(_calm_step, batch) for batch in batches], pieces)]
-    bounces = _in_turns([partial(_bounce, batch, places, speeds) for batch in batches], max(5, pieces // 5))
+    steps = _least_in_turns([partial(_calm_step, batch) for batch in batches], pieces)
+    bounces = _least_in_turns([partial(_bounce, batch, places, speeds) for batch in batches], max(5, pieces // 5))
     few = int(batches[0].counts.bounces.sum()) < WORLDS // 4
-    return [(step, None if few else min(found)) for step, found in zip(steps, bounces, strict=True)]
+    return [(step, None if few else bounce) for step, bounce in zip(steps, bounces, strict=True)]
 
 
-def _in_turns(measures: Sequence[Callable[[], float]], pieces: int) -> list[list[float]]:
-    """Return what each has measured, so many times."""
+def _least_in_turns(measures: Sequence[Callable[[], float]], pieces: int) -> list[float]:
+    """Return the least that each has measured, of so many times."""
     rounds = [[measure() for measure in measures] for _ in range(pieces)]
-    return [list(found) for found in zip(*rounds, strict=True)]
+    return [min(found) for found in zip(*rounds, strict=True)]
 
 
 def _calm_step(batch: WorldBatch) -> float:

@@ -110,8 +110,9 @@ def features_picture(rows: Sequence[FeatureRow]) -> bytes:
     axes.set_yticks(range(len(kept)), [row.scene for row in reversed(kept)])
     axes.set_ylim(-0.6, len(kept) - 0.1)
     axes.set_xscale("log")
-    left, right = axes.get_xlim()
-    axes.set_xlim(left * (left / right) ** 0.08, right)  # room for the first label
+    costs = [cost for row in kept for cost in (row.lean_bounce, row.general_bounce) if cost]
+    if costs:
+        axes.set_xlim(min(costs) / 1.8, max(costs) * 1.8)  # room for the labels
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())

@@ -18,9 +18,9 @@ from bounce_env.engine.arguments import (
 )
 from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import from_python
-from bounce_env.engine.events.loop import LEDGER_FULL
-from bounce_env.engine.memory.records import LEDGER, OUT, Counts
-from bounce_env.engine.memory.state import State
+from bounce_env.engine.events.loop import PAGE_FULL
+from bounce_env.engine.memory.records import NO_WORLD, OUT, Counts
+from bounce_env.engine.memory.state import State, with_recording
 from bounce_env.engine.motion.parts import part_offset_at
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import features_of_worlds, forced_features, pack, switch_round_ends
@@ -65,7 +65,7 @@ class World:
         self.scene = scene
         self._balls = whole("balls", balls, 1, MAX_BALLS)
         self._forced = forced_features(scene, features) | {Feature.SWITCHES}
-        self._state = pack([scene], balls=self._balls, features=self._forced)
+        self._state = self._packed(scene)
         self._bound = bind(self._state)
         self._parts = scene.parts
         self._started = False
@@ -117,18 +117,18 @@ class World:
         max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
-        world = self._state.worlds[0]
         hi, lo = world_begin_call(self._bound, seconds)
         if not ledger:
-            world_advance_to(self._bound, hi, lo, max_events, None)
+            world_advance_to(self._bound, hi, lo, max_events)
             return None
-        pages: list[npt.NDArray[Any]] = []
-        page = np.zeros(_LEDGER_ROWS * self._balls, LEDGER)
-        code = LEDGER_FULL
-        while code == LEDGER_FULL:
-            world.rows = 0
-            code = world_advance_to(self._bound, hi, lo, max_events, page)
-            pages.append(page[: world.rows].copy())
+        recording = self._state.recording
+        head, pages = recording.head[0], []
+        head.world, code = 0, PAGE_FULL
+        while code == PAGE_FULL:
+            head.rows = 0
+            code = world_advance_to(self._bound, hi, lo, max_events)
+            pages.append(recording.ledger[: head.rows].copy())
+        head.world = NO_WORLD
         return np.concatenate(pages)
 
     def advance_until(self, bounces: int, seconds: float, *, max_events: int = MAX_EVENTS) -> int:
@@ -215,7 +215,7 @@ class World:
             raise TypeError(f"scene = {shown(scene)}: must be a Scene")
         if scene.ball.radius != self.scene.ball.radius:
             raise ValueError(f"ball.radius = {scene.ball.radius!r}: must be {self.scene.ball.radius!r} as before")
-        state = pack([scene], balls=self._balls, features=self._forced)
+        state = self._packed(scene)
         old, new = self._state.worlds[0], state.worlds[0]
         for name in ("time_hi", "time_lo", "bounces", "speed_capped", "events", "events_before", "drag_hi", "drag_lo"):
             new[name] = old[name]
@@ -232,6 +232,11 @@ class World:
         for m in range(len(scene.parts)):
             world_resume_part(bound, m)
         self.scene, self._state, self._bound, self._parts = scene, state, bound, scene.parts
+
+    def _packed(self, scene: Scene) -> State:
+        """Return the state of a world of a scene, with a page for its ledger."""
+        state = pack([scene], balls=self._balls, features=self._forced)
+        return with_recording(state, rows=_LEDGER_ROWS * self._balls)
 
     def _move_parts(self, scene: Scene, state: State) -> None:
         """Put the parts of a new scene, at rest, where those of the same name are, with their commands."""

@@ -45,7 +45,7 @@ def batch_advance(state: State, seconds: float, max_events: int) -> int:
     unfinished = 0
     for w in range(state.worlds.shape[0]):
         hi, lo = begin_call(state, w, seconds)
-        unfinished += run(state, w, hi, lo, max_events, None) == BUDGET_SPENT
+        unfinished += run(state, w, hi, lo, max_events) == BUDGET_SPENT
     return unfinished
 
 
@@ -53,7 +53,7 @@ def batch_advance(state: State, seconds: float, max_events: int) -> int:
 def batch_advance_until(state: State, bounces: int, seconds: float, max_events: int) -> None:
     for w in range(state.worlds.shape[0]):
         hi, lo = begin_call(state, w, seconds)
-        run(state, w, hi, lo, max_events, None, state.worlds[w].bounces + bounces)
+        run(state, w, hi, lo, max_events, state.worlds[w].bounces + bounces)
 
 
 @kernel

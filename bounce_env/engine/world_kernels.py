@@ -1,7 +1,5 @@
 """The entry points of `World` into compiled code; each works on world 0 of its state."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
@@ -31,8 +29,8 @@ def world_begin_call(state: State, seconds: float) -> tuple[float, float]:
 
 
 @kernel
-def world_advance_to(state: State, hi: float, lo: float, max_events: int, ledger: Any) -> int:
-    code: int = run(state, 0, hi, lo, max_events, ledger)
+def world_advance_to(state: State, hi: float, lo: float, max_events: int) -> int:
+    code: int = run(state, 0, hi, lo, max_events, None, True)
     return code
 
 
@@ -40,7 +38,7 @@ def world_advance_to(state: State, hi: float, lo: float, max_events: int, ledger
 def world_advance_until(state: State, bounces: int, seconds: float, max_events: int) -> None:
     """Advance until there have been `bounces` since reset, at most `seconds`."""
     hi, lo = begin_call(state, 0, seconds)
-    run(state, 0, hi, lo, max_events, None, bounces)
+    run(state, 0, hi, lo, max_events, bounces)
 
 
 @kernel

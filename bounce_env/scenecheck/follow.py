@@ -84,7 +84,7 @@ def _follow(state: State, watch: Watch, w: int, start: Array, fate: Any, seen: A
     code = BUDGET_SPENT
     while code != DONE and fate.end == PLAYING:
         resume(state, w)
-        code = run(state, w, watch.seconds, 0.0, 1, None)
+        code = run(state, w, watch.seconds, 0.0, 1)
         fate.events += 1
         fate.x, fate.y, fate.vx, fate.vy = ball_now(state, w, 0)
         fate.time = world.time_hi

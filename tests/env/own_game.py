@@ -54,7 +54,7 @@ def play(rules, game, actions, w):
         g.hold_action(game, actions, w, rules.pace.repeat)
         g.command(state, w, PADDLE, g.clipped(game.held[w, 0]) * g.full_speed(state, w, PADDLE))
         episode.frames += 1
-        code = g.run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
+        code = g.run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events)
         if state.balls[w, 0].status == g.OUT:
             episode.end = g.DRAINED
         elif code != g.DONE:

@@ -69,7 +69,7 @@ def fastest_closing(ball: Record, touches: Table, w: int, slowest: float) -> tup
 
 
 @function
-def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, int, float, float]:
+def bounce_from_all(state: State, w: int, k: int) -> tuple[int, int, float, float]:
     """Bounce from everything that the ball touches and closes on, fastest first.
 
     Where bounces in a corner are taken to be over, what closes is taken from the velocity. Returns (single, corner, vx,
@@ -87,9 +87,9 @@ def bounce_from_all(state: State, w: int, k: int, ledger: Table) -> tuple[int, i
         damped = ball.touched > 1 and is_bounce_damped(state, w, k, i, closing)
         if damped:
             break
-        if ball.touched > 1 and bounce_off_both(state, w, k, i, noise, ledger):
+        if ball.touched > 1 and bounce_off_both(state, w, k, i, noise):
             continue
-        kicked = bounce_off(state, w, k, i, closing, noise, ledger)
+        kicked = bounce_off(state, w, k, i, closing, noise)
         if is_crushed_by(state, w, k, i):
             ball.status = CRUSHED
             return -1, -1, ball.vx, ball.vy
@@ -116,14 +116,14 @@ def _end_bounces(state: State, w: int, k: int) -> int:
 
 
 @routine
-def bounce_off_fast(state: State, w: int, k: int, slowest: float, ledger: Table) -> None:
+def bounce_off_fast(state: State, w: int, k: int, slowest: float) -> None:
     """Bounce from what a ball touches and closes on faster than `slowest` [m/s], fastest first; it may get crushed."""
     ball = state.balls[w, k]
     for _ in range(BOUNCES_AT_ONE_EVENT):
         i, closing = fastest_closing(ball, state.touches, w, slowest)
         if i < 0:
             return
-        bounce_off(state, w, k, i, closing, 0.0, ledger)
+        bounce_off(state, w, k, i, closing, 0.0)
         if is_crushed_by(state, w, k, i):
             ball.status = CRUSHED
             return
@@ -132,4 +132,4 @@ def bounce_off_fast(state: State, w: int, k: int, slowest: float, ledger: Table)
     vx, vy = ball.vx, ball.vy
     i = _end_bounces(state, w, k)
     if i >= 0 and ball.status != CRUSHED:
-        count_bounce(state, w, k, state.touches[w, i], vx, vy, ledger)
+        count_bounce(state, w, k, state.touches[w, i], vx, vy)

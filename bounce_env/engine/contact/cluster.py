@@ -26,7 +26,7 @@ from bounce_env.engine.tolerances import ALIGNED, CLUSTER_GAP, PRESSING, ULPS_OF
 
 
 @where("pairs", inline=False)
-def resolve_cluster(state: State, w: int, k: int, ledger: Table) -> None:
+def resolve_cluster(state: State, w: int, k: int) -> None:
     """Resolve all balls that touch ball `k`, or each other, at its present instant, as one.
 
     Where something in it still closes fast that is first: it bounces by the law, and the cluster is resolved again.
@@ -36,7 +36,7 @@ def resolve_cluster(state: State, w: int, k: int, ledger: Table) -> None:
     surfaces, hits = 0, False
     for i in range(state.members.shape[1]):
         if state.members[w, i].inside:
-            surfaces = _list_surfaces(state, w, i, i == k, surfaces, ledger)
+            surfaces = _list_surfaces(state, w, i, i == k, surfaces)
             hits = hits or state.members[w, i].hits
     if state.parts is not None and ball.status == CRUSHED and not state.members[w, k].fixed:
         _resolve_others(state, w, k)
@@ -45,9 +45,9 @@ def resolve_cluster(state: State, w: int, k: int, ledger: Table) -> None:
     if hits or closing:
         _wait_for_hits(state, w, surfaces, count, ball.hi, ball.lo)
         return
-    _hold(state, w, surfaces, ledger)
-    if _close_nowhere(state, w, count, ledger):
-        go_on(state, w, count, ledger)
+    _hold(state, w, surfaces)
+    if _close_nowhere(state, w, count):
+        go_on(state, w, count)
     else:
         _wait_for_hits(state, w, surfaces, count, math.inf, 0.0)
 
@@ -115,7 +115,7 @@ def touch_others(state: State, w: int, k: int, but: int) -> bool:
 
 
 @function
-def _list_surfaces(state: State, w: int, i: int, first: bool, count: int, ledger: Table) -> int:
+def _list_surfaces(state: State, w: int, i: int, first: bool, count: int) -> int:
     """List what member `i` touches as contacts from `count` on; return how many there are then.
 
     The ball whose event this is (`first`) bounces by the law from what it closes on fast; of another one it is noted.
@@ -127,7 +127,7 @@ def _list_surfaces(state: State, w: int, i: int, first: bool, count: int, ledger
     member.hits = 0
     if fast >= 0 and ball.status != CRUSHED:
         if first:
-            bounce_off_fast(state, w, i, slowest, ledger)
+            bounce_off_fast(state, w, i, slowest)
         else:
             member.hits = 1
     for n in range(ball.touched if ball.status != CRUSHED else 0):
@@ -210,7 +210,7 @@ def _wait_for_hits(state: State, w: int, first: int, count: int, hi: float, lo: 
 
 
 @function
-def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> bool:
+def _close_nowhere(state: State, w: int, count: int) -> bool:
     """Change the members' velocities by as little as lets them close on nothing, and log what that takes.
 
     Returns whether nothing is crushed by that.
@@ -237,7 +237,7 @@ def _close_nowhere(state: State, w: int, count: int, ledger: Table) -> bool:
     least = 4.0 * slack + math.sqrt(2.0 * pull * CLUSTER_GAP * state.scenes[state.worlds[w].scene].extent)
     for p in range(count):
         if state.contacts[w, p].force > least:
-            _log_push(state, w, state.contacts[w, p], ledger)
+            _log_push(state, w, state.contacts[w, p])
     for i in range(state.members.shape[1]):
         if state.members[w, i].inside:
             ball, member = state.balls[w, i], state.members[w, i]
@@ -275,7 +275,7 @@ def _squeeze(state: State, w: int, count: int) -> bool:
 
 
 @function
-def _hold(state: State, w: int, count: int, ledger: Table) -> None:
+def _hold(state: State, w: int, count: int) -> None:
     """Let friction stop the members that gravity presses on surfaces which hold them, unless a part moves into any."""
     for p in range(count):
         if is_driven(state.contacts[w, p]):
@@ -290,7 +290,7 @@ def _hold(state: State, w: int, count: int, ledger: Table) -> None:
             ball.vx, ball.vy, member.fixed = contact.ux, contact.uy, 1
             if vx != ball.vx or vy != ball.vy:
                 surface = Surface(contact.element, contact.nx, contact.ny, contact.ux, contact.uy)
-                append_contact(ledger, state.worlds[w], ball, contact.one, ABSORBED, surface, vx, vy)
+                append_contact(state, w, contact.one, ABSORBED, surface, vx, vy)
 
 
 @function
@@ -313,7 +313,7 @@ def _opening(state: State, w: int, contact: Record) -> float:
 
 
 @function
-def _log_push(state: State, w: int, contact: Record, ledger: Table) -> None:
+def _log_push(state: State, w: int, contact: Record) -> None:
     """Change the velocities of those in contact by its force, and log that."""
     world, one = state.worlds[w], state.balls[w, contact.one]
     vx, vy, ux, uy = one.vx, one.vy, contact.ux, contact.uy
@@ -322,11 +322,11 @@ def _log_push(state: State, w: int, contact: Record, ledger: Table) -> None:
     if not state.members[w, contact.one].fixed:
         one.vx, one.vy = vx + contact.force * contact.nx, vy + contact.force * contact.ny
     surface = Surface(contact.element, contact.nx, contact.ny, ux, uy)
-    append_contact(ledger, world, one, contact.one, ABSORBED, surface, vx, vy)
+    append_contact(state, w, contact.one, ABSORBED, surface, vx, vy)
     if contact.other < 0:
         return
     other = state.balls[w, contact.other]
     if not state.members[w, contact.other].fixed:
         other.vx, other.vy = ux - contact.force * contact.nx, uy - contact.force * contact.ny
     surface = Surface(state.scenes[world.scene].elements + contact.one, -contact.nx, -contact.ny, vx, vy)
-    append_contact(ledger, world, other, contact.other, ABSORBED, surface, ux, uy)
+    append_contact(state, w, contact.other, ABSORBED, surface, ux, uy)

@@ -6,7 +6,7 @@ then, or when anything happens to one of the balls, they are found anew. A clust
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.compile.jit import Record, function
 from bounce_env.engine.contact.cluster_places import close_gaps
 from bounce_env.engine.contact.projection import project
 from bounce_env.engine.contact.sides import update_crossing_sides
@@ -31,7 +31,7 @@ LONGEST = 0.0625  # [s] before forces are found anew
 
 
 @function
-def go_on(state: State, w: int, count: int, ledger: Table) -> None:
+def go_on(state: State, w: int, count: int) -> None:
     """Let the members of a cluster go on from velocities that close on nothing."""
     soft = _accelerate(state, w, count)
     _keep_closed(state, w, count)
@@ -42,7 +42,7 @@ def go_on(state: State, w: int, count: int, ledger: Table) -> None:
         _turn_forces(state, w, count, 0.5 * seconds)
     for i in range(state.members.shape[1]):
         if state.members[w, i].inside and state.balls[w, i].status != CRUSHED and state.members[w, i].leans:
-            _bear(state, w, i, count, ledger)
+            _bear(state, w, i, count)
     for i in range(state.members.shape[1]):
         if state.members[w, i].inside and state.balls[w, i].status != CRUSHED:
             _plan(state, w, i, seconds)
@@ -214,7 +214,7 @@ def _add_acceleration(state: State, w: int, k: int, ax: float, ay: float) -> Non
 
 
 @function
-def _bear(state: State, w: int, k: int, count: int, ledger: Table) -> None:
+def _bear(state: State, w: int, k: int, count: int) -> None:
     """Note what bears a member that is pressed on others, and log when that is something else than before."""
     ball, vx, vy = state.balls[w, k], state.members[w, k].x0, state.members[w, k].y0
     support, surface, most, still = -1, -1, 0.0, False
@@ -237,7 +237,7 @@ def _bear(state: State, w: int, k: int, count: int, ledger: Table) -> None:
     new_vx, new_vy = ball.vx, ball.vy
     if own >= 0:
         ball.vx, ball.vy = vx, vy
-        append_contact(ledger, state.worlds[w], ball, k, CONTACT_ENDS, Surface(own, ball.nx, ball.ny, 0.0, 0.0), vx, vy)
+        append_contact(state, w, k, CONTACT_ENDS, Surface(own, ball.nx, ball.ny, 0.0, 0.0), vx, vy)
         ball.vx, ball.vy = new_vx, new_vy
     ball.support = contact.element if contact.one == k else elements + contact.one
     ux, uy = contact.ux, contact.uy
@@ -245,7 +245,7 @@ def _bear(state: State, w: int, k: int, count: int, ledger: Table) -> None:
         other = state.balls[w, contact.other if contact.one == k else contact.one]
         ux, uy = other.vx, other.vy
     tells = Surface(ball.support, sign * contact.nx, sign * contact.ny, ux, uy)
-    append_contact(ledger, state.worlds[w], ball, k, CONTACT_BEGINS, tells, vx, vy)
+    append_contact(state, w, k, CONTACT_BEGINS, tells, vx, vy)
     _set_contact(state, w, k, surface, count)
 
 

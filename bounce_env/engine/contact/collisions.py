@@ -2,7 +2,7 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.contact.bounces import take_vague
 from bounce_env.engine.contact.cluster import resolve_cluster, touch_others
@@ -25,7 +25,7 @@ from bounce_env.engine.tolerances import CLUSTER_GAP, PRESSING, SEARCH_ENDS, ULP
 
 
 @where("pairs", inline=False)
-def collide(state: State, w: int, k: int, j: int, hi: float, lo: float, ledger: Table) -> None:
+def collide(state: State, w: int, k: int, j: int, hi: float, lo: float) -> None:
     """Let balls `k` > `j` hit each other at the instant (hi, lo); both then bounce from what else they touch.
 
     Equal masses exchange (1 + b^2) / 2 of the speed at which they close; friction does not act. Balls that lie on each
@@ -53,9 +53,9 @@ def collide(state: State, w: int, k: int, j: int, hi: float, lo: float, ledger: 
     for i in (k, j):
         state.members[w, i].meets += 1
     if _lie_on_each_other(state, w, k, j, nx, ny, distance):
-        resolve_cluster(state, w, k, ledger)
+        resolve_cluster(state, w, k)
         return
-    _exchange_speeds(state, w, k, j, nx, ny, distance, ledger)
+    _exchange_speeds(state, w, k, j, nx, ny, distance)
     for ball in (one, other):
         if ball.status != CRUSHED:
             schedule_resolve(ball)
@@ -86,9 +86,7 @@ def _lie_on_each_other(state: State, w: int, k: int, j: int, nx: float, ny: floa
 
 
 @function
-def _exchange_speeds(
-    state: State, w: int, k: int, j: int, nx: float, ny: float, distance: float, ledger: Table
-) -> None:
+def _exchange_speeds(state: State, w: int, k: int, j: int, nx: float, ny: float, distance: float) -> None:
     """Bounce ball `k` and ball `j` off each other, whose centres are `distance` [m] apart along (nx, ny)."""
     one, other, world = state.balls[w, k], state.balls[w, j], state.worlds[w]
     head = state.scenes[world.scene]
@@ -106,8 +104,8 @@ def _exchange_speeds(
     _cap_pair_speed(one, other, nx, ny, head.max_speed, world)
     _cap_pair_speed(other, one, -nx, -ny, head.max_speed, world)
     world.bounces += 1
-    append_contact(ledger, world, one, k, BOUNCE, Surface(head.elements + j, nx, ny, ux, uy), vx, vy)
-    append_contact(ledger, world, other, j, BOUNCE, Surface(head.elements + k, -nx, -ny, vx, vy), ux, uy)
+    append_contact(state, w, k, BOUNCE, Surface(head.elements + j, nx, ny, ux, uy), vx, vy)
+    append_contact(state, w, j, BOUNCE, Surface(head.elements + k, -nx, -ny, vx, vy), ux, uy)
     # The push may miss its direction by as much: it does not bounce the ball from what else it touches.
     vague = gain if closing <= noise else gain * (one.tolerance + other.tolerance) / distance
     for i in (k, j):

@@ -26,7 +26,7 @@ from bounce_env.engine.tolerances import (
 
 
 @function
-def bounce_off_both(state: State, w: int, k: int, i: int, noise: float, ledger: Table) -> bool:
+def bounce_off_both(state: State, w: int, k: int, i: int, noise: float) -> bool:
     """Bounce from touched surface `i` and one that is closed on alike, as one; returns whether there is such a one.
 
     v' = P(v) - e (v - P(v)), where P(v), the nearest velocity that closes on neither, is 0 between two that stand. One
@@ -50,9 +50,9 @@ def bounce_off_both(state: State, w: int, k: int, i: int, noise: float, ledger: 
     turn = one.nx * other.ny - one.ny * other.nx
     share = ((vx - vx0) * other.ny - (vy - vy0) * other.nx) / turn
     ball.vx, ball.vy = vx0 + share * one.nx, vy0 + share * one.ny
-    count_corner(state, w, k, one, vx0, vy0, ledger)
+    count_corner(state, w, k, one, vx0, vy0)
     vx0, vy0, ball.vx, ball.vy = ball.vx, ball.vy, vx, vy
-    count_corner(state, w, k, other, vx0, vy0, ledger)
+    count_corner(state, w, k, other, vx0, vy0)
     return True
 
 

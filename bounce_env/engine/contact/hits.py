@@ -1,6 +1,6 @@
 """A hit of one surface: the bounce law, what gravity and a kick make of it, and its row in the ledger."""
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.contact.restitution import (
     bounce,
     capped,
@@ -16,7 +16,7 @@ from bounce_env.engine.tolerances import WEIGHTLESS
 
 
 @function
-def bounce_off(state: State, w: int, k: int, i: int, closing: float, noise: float, ledger: Table) -> bool:
+def bounce_off(state: State, w: int, k: int, i: int, closing: float, noise: float) -> bool:
     """Bounce from one touched surface; returns whether it gave a kick. A speed up to `noise` [m/s] left is none."""
     ball, world, touch = state.balls[w, k], state.worlds[w], state.touches[w, i]
     head, material = state.scenes[world.scene], state.elements[world.scene, touch.element]
@@ -36,7 +36,7 @@ def bounce_off(state: State, w: int, k: int, i: int, closing: float, noise: floa
         vx, vy = _with_speed_of(vx, vy, vx0, vy0)
     ball.vx, ball.vy, over = capped(vx, vy, touch.nx, touch.ny, touch.ux, touch.uy, head.max_speed)
     world.speed_capped += over
-    count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    count_bounce(state, w, k, touch, vx0, vy0)
     return kicked
 
 
@@ -95,22 +95,22 @@ def _is_kick_ready(state: State, w: int, k: int, element: int, cooldown: float) 
 
 
 @function
-def count_bounce(state: State, w: int, k: int, touch: Record, vx0: float, vy0: float, ledger: Table) -> None:
+def count_bounce(state: State, w: int, k: int, touch: Record, vx0: float, vy0: float) -> None:
     """Count a bounce from a touched surface, and log it."""
-    _count_as(state, w, k, touch, BOUNCE, vx0, vy0, ledger)
+    _count_as(state, w, k, touch, BOUNCE, vx0, vy0)
 
 
 @function
-def count_corner(state: State, w: int, k: int, touch: Record, vx0: float, vy0: float, ledger: Table) -> None:
+def count_corner(state: State, w: int, k: int, touch: Record, vx0: float, vy0: float) -> None:
     """Count a touched surface's share in a bounce from several at once, and log it."""
-    _count_as(state, w, k, touch, CORNER_BOUNCE, vx0, vy0, ledger)
+    _count_as(state, w, k, touch, CORNER_BOUNCE, vx0, vy0)
 
 
 @function
-def _count_as(state: State, w: int, k: int, touch: Record, kind: int, vx0: float, vy0: float, ledger: Table) -> None:
+def _count_as(state: State, w: int, k: int, touch: Record, kind: int, vx0: float, vy0: float) -> None:
     state.worlds[w].bounces += 1
     count_hit(state, w, touch.element)
-    append_contact(ledger, state.worlds[w], state.balls[w, k], k, kind, surface_of(touch), vx0, vy0)
+    append_contact(state, w, k, kind, surface_of(touch), vx0, vy0)
 
 
 @function

@@ -4,7 +4,7 @@ Ever smaller bounces that lead to a contact with a straight surface are summed i
 "Infinitely many bounces").
 """
 
-from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.compile.jit import Record, function
 from bounce_env.engine.contact.bounces import GOES_ON, bounce_from_all, take_soft
 from bounce_env.engine.contact.cluster import resolve_cluster
 from bounce_env.engine.contact.hits import count_bounce, surface_of
@@ -50,7 +50,7 @@ NOT_PLANNED = -2.0
 
 
 @function
-def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
+def resolve(state: State, w: int, k: int, at_once: bool) -> None:
     """Bounce a ball from all that it touches, decide what it does next, and plan that.
 
     at_once: whether its flight has ended where it began, by something that it was to hit.
@@ -60,7 +60,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
         ball.status = CRUSHED
         return
     if is_pressed_by_balls(state, w, k):
-        resolve_cluster(state, w, k, ledger)
+        resolve_cluster(state, w, k)
         return
     if abs(ball.vx) + abs(ball.vy) < STANDING:
         ball.vx, ball.vy = 0.0, 0.0
@@ -75,7 +75,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
         keep_outside_touched(ball, state.touches, w)
     if settling == SETTLES:
         contact, support = FLYING, -1  # that contact had not begun yet
-    duration = _resolve_bounces(state, w, k, contact, support, at_once, ledger)
+    duration = _resolve_bounces(state, w, k, contact, support, at_once)
     if duration == NOT_PLANNED:
         return
     if duration >= 0.0:
@@ -85,7 +85,7 @@ def resolve(state: State, w: int, k: int, at_once: bool, ledger: Table) -> None:
 
 
 @function
-def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, at_once: bool, ledger: Table) -> float:
+def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, at_once: bool) -> float:
     """Bounce a ball from all that it touches, let it fly, slide or rest, and search what stands in its way.
 
     contact, support: those that it came with.
@@ -95,7 +95,7 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
     ball, bounces = state.balls[w, k], state.worlds[w].bounces
     if at_once and state.gravity is not None:
         take_soft(ball, state.touches, w, state.scenes[state.worlds[w].scene].extent)
-    single, corner, vx0, vy0 = bounce_from_all(state, w, k, ledger)
+    single, corner, vx0, vy0 = bounce_from_all(state, w, k)
     if corner == GOES_ON:
         schedule_resolve(ball)
     if corner == GOES_ON or ball.status == CRUSHED:
@@ -109,16 +109,16 @@ def _resolve_bounces(state: State, w: int, k: int, contact: int, support: int, a
         again = (rides or slides_in) and at_once and state.worlds[w].bounces == bounces
         vx, vy = ball.vx, ball.vy
         _end_hops_on_curves(state, w, k)
-        i = _resolve_contact(state, w, k, contact, support, again, vx0, vy0, ledger)
+        i = _resolve_contact(state, w, k, contact, support, again, vx0, vy0)
         if i < 0 and ball.contact == FLYING:
             ball.vx, ball.vy = vx, vy
         corner = corner if i < 0 else -1
     if corner >= 0:
-        count_bounce(state, w, k, state.touches[w, corner], vx0, vy0, ledger)
+        count_bounce(state, w, k, state.touches[w, corner], vx0, vy0)
     # Where something closes on it, a ball without room is bounced from a corner at once, for ever.
     met_nothing = state.worlds[w].bounces == bounces or ball.confined > BOUNCES_WITHOUT_ROOM
     if ball.contact == FLYING:
-        leave_part(state, w, k, at_once and met_nothing, ledger)
+        leave_part(state, w, k, at_once and met_nothing)
     update_crossing_sides(state, w, k)
     vx, vy, duration = ball.vx, ball.vy, -1.0
     if state.gravity is not None and single >= 0 and ball.contact == FLYING:
@@ -155,7 +155,6 @@ def _end_hops_on_curves(state: State, w: int, k: int) -> None:
 @function
 def _resolve_contact(
     state: State, w: int, k: int, contact: int, support: int, off: bool, vx: float, vy: float,
-    ledger: Table,
 ) -> int:  # fmt: skip
     """Find the ball's contact, if it is not to fly `off`; log the end of the one that it had, the beginning of another.
 
@@ -168,13 +167,13 @@ def _resolve_contact(
     if ball.contact == contact and ball.support == support and not (stopped or let_go):
         return -1
     if support >= 0:
-        _log_end(state, w, k, support, vx, vy, ledger)
+        _log_end(state, w, k, support, vx, vy)
     if i >= 0:
         touch = state.touches[w, i]
         ball.nx, ball.ny = touch.nx, touch.ny
-        append_contact(ledger, state.worlds[w], ball, k, CONTACT_BEGINS, surface_of(touch), vx, vy)
+        append_contact(state, w, k, CONTACT_BEGINS, surface_of(touch), vx, vy)
         if let_go:
-            _log_end(state, w, k, touch.element, ball.vx, ball.vy, ledger)
+            _log_end(state, w, k, touch.element, ball.vx, ball.vy)
     return i
 
 
@@ -215,7 +214,7 @@ def _resolve_settling(state: State, w: int, k: int, single: int) -> float:
 
 
 @function
-def _log_end(state: State, w: int, k: int, support: int, vx: float, vy: float, ledger: Table) -> None:
+def _log_end(state: State, w: int, k: int, support: int, vx: float, vy: float) -> None:
     """The end of a contact changes no velocity: what does so has rows of its own."""
     ball = state.balls[w, k]
     new_vx, new_vy, ux, uy = ball.vx, ball.vy, 0.0, 0.0
@@ -223,5 +222,5 @@ def _log_end(state: State, w: int, k: int, support: int, vx: float, vy: float, l
         if state.touches[w, i].element == support:
             ux, uy = state.touches[w, i].ux, state.touches[w, i].uy
     ball.vx, ball.vy = vx, vy
-    append_contact(ledger, state.worlds[w], ball, k, CONTACT_ENDS, Surface(support, ball.nx, ball.ny, ux, uy), vx, vy)
+    append_contact(state, w, k, CONTACT_ENDS, Surface(support, ball.nx, ball.ny, ux, uy), vx, vy)
     ball.vx, ball.vy = new_vx, new_vy

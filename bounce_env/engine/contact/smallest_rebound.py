@@ -3,7 +3,7 @@
 So it does along what turns or stretches, and between two round surfaces, or two parts.
 """
 
-from bounce_env.engine.compile.jit import Table, function, where
+from bounce_env.engine.compile.jit import function, where
 from bounce_env.engine.contact.bounces import fastest_closing
 from bounce_env.engine.contact.hits import count_bounce
 from bounce_env.engine.contact.restitution import is_leaving, normal_load, push_off, slow_speed, surface_speed
@@ -11,7 +11,7 @@ from bounce_env.engine.memory.state import State
 
 
 @where("parts")
-def leave_part(state: State, w: int, k: int, told: bool, ledger: Table) -> None:
+def leave_part(state: State, w: int, k: int, told: bool) -> None:
     """Let a ball that flies leave a part with the smallest rebound: of those that it touches, the fastest.
 
     Only one that it does not leave already, where something round presses the ball, or it was told at once of a hit.
@@ -34,12 +34,12 @@ def leave_part(state: State, w: int, k: int, told: bool, ledger: Table) -> None:
     # Without gravity there is no smallest rebound, but rounding, which had told it of the hit.
     rebound = max(touch.least, 2.0 * slow_speed(ball, touch))
     push_off(ball, touch, rebound)
-    count_bounce(state, w, k, touch, vx0, vy0, ledger)
-    _keep_off(state, w, k, index, rebound, ledger)
+    count_bounce(state, w, k, touch, vx0, vy0)
+    _keep_off(state, w, k, index, rebound)
 
 
 @function
-def _keep_off(state: State, w: int, k: int, index: int, rebound: float, ledger: Table) -> None:
+def _keep_off(state: State, w: int, k: int, index: int, rebound: float) -> None:
     """After a `rebound` [m/s] from touched surface `index`: let the ball leave along what that closes on.
 
     If that is round, it leaves it, too, as far as it does not close on the first again: of a flight along a round one,
@@ -56,4 +56,4 @@ def _keep_off(state: State, w: int, k: int, index: int, rebound: float, ledger: 
         left = rebound - closing * opposed  # how fast it then still leaves the first
         more = rebound if opposed <= 0.0 else min(max(0.5 * left / opposed, 0.0), rebound)
     push_off(ball, touch, closing + more)
-    count_bounce(state, w, k, touch, vx0, vy0, ledger)
+    count_bounce(state, w, k, touch, vx0, vy0)

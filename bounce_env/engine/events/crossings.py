@@ -2,7 +2,7 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Table, routine, where
+from bounce_env.engine.compile.jit import routine, where
 from bounce_env.engine.contact.arrival import end_flight
 from bounce_env.engine.detect.pairs import plan_pairs
 from bounce_env.engine.detect.schedule import schedule_crossing, schedule_resolve
@@ -15,46 +15,46 @@ from bounce_env.engine.motion.path import motion_after
 
 
 @routine
-def cross_next(state: State, w: int, k: int, ledger: Table) -> None:
+def cross_next(state: State, w: int, k: int) -> None:
     """Process a crossing. The flight goes on as if there were nothing, unless it is a drain or changes the pull."""
     kind = state.balls[w, k].sensor_kind
     if kind == FIELD_BORDER:
         _cross_field_edge(state, w, k)
     elif kind == LINE_SENSOR:
-        _cross_line(state, w, k, ledger)
+        _cross_line(state, w, k)
     else:
-        _enter_circle_sensor(state, w, k, ledger)
+        _enter_circle_sensor(state, w, k)
 
 
 @where("sensors")
-def _cross_line(state: State, w: int, k: int, ledger: Table) -> None:
+def _cross_line(state: State, w: int, k: int) -> None:
     ball = state.balls[w, k]
     sensor = state.sensors[state.worlds[w].scene, ball.sensor_index]
     state.sensor_sides[w, k, ball.sensor_index] = -state.sensor_sides[w, k, ball.sensor_index]
     _, _, vx, vy = motion_after(state, w, k, ball.sensor_after)
     facing = 1.0 if vy * sensor.ux - vx * sensor.uy < 0.0 else -1.0
     surface = Surface(sensor.element, -facing * sensor.uy, facing * sensor.ux, 0.0, 0.0)
-    _report_crossing(state, w, k, sensor.drain, surface, ledger)
+    _report_crossing(state, w, k, sensor.drain, surface)
 
 
 @where("circle_sensors")
-def _enter_circle_sensor(state: State, w: int, k: int, ledger: Table) -> None:
+def _enter_circle_sensor(state: State, w: int, k: int) -> None:
     ball = state.balls[w, k]
     ring = state.circle_sensors[state.worlds[w].scene, ball.sensor_index]
     state.circle_sensor_sides[w, k, ball.sensor_index] = -1
     x, y, _, _ = motion_after(state, w, k, ball.sensor_after)
     dx, dy = x - ring.x, y - ring.y
     distance = math.sqrt(dx * dx + dy * dy)
-    _report_crossing(state, w, k, ring.drain, Surface(ring.element, dx / distance, dy / distance, 0.0, 0.0), ledger)
+    _report_crossing(state, w, k, ring.drain, Surface(ring.element, dx / distance, dy / distance, 0.0, 0.0))
 
 
 @routine
-def _report_crossing(state: State, w: int, k: int, drain: int, surface: Surface, ledger: Table) -> None:
+def _report_crossing(state: State, w: int, k: int, drain: int, surface: Surface) -> None:
     """Count and log a crossing, the surface's normal towards where the ball came from, and plan what follows it."""
     ball = state.balls[w, k]
     count_hit(state, w, surface.element)
     x, y, vx, vy = motion_after(state, w, k, ball.sensor_after)
-    append_crossing(ledger, state.worlds[w], ball, k, surface, x, y, vx, vy)
+    append_crossing(state, w, k, surface, x, y, vx, vy)
     if drain:
         ball.x, ball.y, ball.vx, ball.vy, ball.hi, ball.lo = x, y, vx, vy, ball.next_hi, ball.next_lo
         ball.status = OUT

@@ -2,7 +2,7 @@
 
 import math
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.detect.pairs import plan_pairs
 from bounce_env.engine.detect.parts import plan_part_zones
 from bounce_env.engine.detect.schedule import schedule_parts, schedule_resolve
@@ -31,7 +31,7 @@ from bounce_env.engine.tolerances import CLEARANCE, ULPS_OF_SPEED
 
 
 @where("parts", inline=False)
-def crush(state: State, w: int, k: int, ledger: Table) -> None:
+def crush(state: State, w: int, k: int) -> None:
     """Stop the part that crushes ball `k`, and hold the ball until a command opens the gap.
 
     A part that shuttles turns back instead, where it has room for it.
@@ -51,13 +51,13 @@ def crush(state: State, w: int, k: int, ledger: Table) -> None:
         ball.contact, ball.rides, ball.support, ball.settling = HELD, -1, shape.element, 0
         ball.nx, ball.ny = nx, ny
         surface = Surface(shape.element, nx, ny, ux, uy)
-        append_contact(ledger, world, ball, k, CRUSH, surface, vx, vy)
+        append_contact(state, w, k, CRUSH, surface, vx, vy)
         ball.hit_after, ball.end_after, ball.sensor_after = math.inf, math.inf, math.inf
         plan_part_zones(state, w, k, 0.0)
         schedule_parts(state, w, k)
         let_go(state, w, k)
     plan_pairs(state, w, k)
-    block_part(state, w, m, ledger)
+    block_part(state, w, m)
 
 
 @where("parts", inline=False)
@@ -78,7 +78,7 @@ def hold_or_free_crushed(state: State, w: int, m: int) -> None:
 
 
 @where("parts", inline=False)
-def meet_crushed(state: State, w: int, k: int, m: int, ledger: Table) -> None:
+def meet_crushed(state: State, w: int, k: int, m: int) -> None:
     """Part `m` comes to ball `k`, which is crushed: it may not close on it, but slide past it.
 
     What is told at once to have come to it again is about to close on it.
@@ -87,7 +87,7 @@ def meet_crushed(state: State, w: int, k: int, m: int, ledger: Table) -> None:
     side = side_of_part(state, w, k, m)
     _, closing = _approach_to_crushed(ball, moving_part(state, w, m), side, world.time_hi, world.time_lo)
     if closing > 0.0 or (ball.hi == world.time_hi and ball.lo == world.time_lo):
-        block_part(state, w, m, ledger)
+        block_part(state, w, m)
     else:
         ball.hi, ball.lo = world.time_hi, world.time_lo
         schedule_parts(state, w, k)

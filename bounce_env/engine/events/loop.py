@@ -6,7 +6,7 @@ these before parts, and each in its order.
 
 import math
 
-from bounce_env.engine.compile.jit import NumberOrNone, Record, Table, function, where
+from bounce_env.engine.compile.jit import NumberOrNone, Record, function, where
 from bounce_env.engine.contact.arrival import end_flight, snap_to_hit
 from bounce_env.engine.contact.collisions import collide
 from bounce_env.engine.contact.resolve import resolve
@@ -17,6 +17,7 @@ from bounce_env.engine.detect.schedule import schedule_parts
 from bounce_env.engine.events.crossings import cross_next
 from bounce_env.engine.events.crushing import crush, meet_crushed
 from bounce_env.engine.events.part_stops import reset_parts, stop_part
+from bounce_env.engine.memory.ledger import is_page_full, keep_moment
 from bounce_env.engine.memory.records import BUDGET, CRUSHED, FLYING, NEXT_HIT, NEXT_SENSOR, NEXT_ZONE, OK, RESOLVE
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of
@@ -25,7 +26,7 @@ from bounce_env.engine.motion.parts import part_offset_at, part_stop_instant
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED, UNSURE
 
 # How a run of the loop ends.
-DONE, BUDGET_SPENT, LEDGER_FULL, BOUNCED = 0, 1, 2, 3
+DONE, BUDGET_SPENT, PAGE_FULL, BOUNCED = 0, 1, 2, 3
 
 # What comes next.
 NOTHING, OF_BALL, OF_PAIR, OF_PART = -1, 0, 1, 2
@@ -37,14 +38,22 @@ ROWS_AT_ONE_EVENT = BOUNCES_AT_ONE_EVENT + 7
 
 @function
 def run(
-    state: State, w: int, until_hi: float, until_lo: float, max_events: int, ledger: Table, bounces: NumberOrNone = None
+    state: State,
+    w: int,
+    until_hi: float,
+    until_lo: float,
+    max_events: int,
+    bounces: NumberOrNone = None,
+    paged: bool = False,
 ) -> int:
-    """Process the events of world `w` up to and including an instant; DONE, BUDGET_SPENT, LEDGER_FULL or BOUNCED.
+    """Process the events of world `w` up to and including an instant; DONE, BUDGET_SPENT, PAGE_FULL or BOUNCED.
 
-    At most `max_events` of them since `resume`, and no more where there have been `bounces` since reset.
+    At most `max_events` of them since `resume`, and no more where there have been `bounces` since reset. paged: stop
+    where the recording of this world has no room for another event, which is otherwise left out of it.
     Unless DONE, the world's time is that of its last event, and the next call goes on from there.
     """
     world = state.worlds[w]
+    keep_moment(state, w)
     while True:
         if bounces is not None and world.bounces >= bounces:
             return BOUNCED
@@ -55,17 +64,18 @@ def run(
         if world.events >= max_events:
             _stop_for_budget(state, w)
             return BUDGET_SPENT
-        if ledger is not None and world.rows + _rows_at_one_event(state) > len(ledger):
-            return LEDGER_FULL
+        if paged and is_page_full(state, w, _rows_at_one_event(state)):
+            return PAGE_FULL
         world.time_hi, world.time_lo = hi, lo
         if what == OF_BALL:
-            world.events += _ball_event(state, w, i, ledger)
+            world.events += _ball_event(state, w, i)
         elif what == OF_PAIR:
-            collide(state, w, i, j, hi, lo, ledger)
+            collide(state, w, i, j, hi, lo)
             world.events += 1
         else:
-            stop_part(state, w, i, ledger)
+            stop_part(state, w, i)
             world.events += 1
+        keep_moment(state, w)
 
 
 @where("pairs", otherwise=ROWS_AT_ONE_EVENT)
@@ -141,7 +151,7 @@ def _stop_for_budget(state: State, w: int) -> None:
 
 
 @function
-def _ball_event(state: State, w: int, k: int, ledger: Table) -> int:
+def _ball_event(state: State, w: int, k: int) -> int:
     """Process the ball's next event; returns how many events it counts for in the budget."""
     ball = state.balls[w, k]
     if ball.next_kind == NEXT_ZONE:
@@ -149,20 +159,20 @@ def _ball_event(state: State, w: int, k: int, ledger: Table) -> int:
         schedule_parts(state, w, k)
         return 0
     if ball.next_kind == NEXT_SENSOR:
-        cross_next(state, w, k, ledger)
+        cross_next(state, w, k)
         return 1
     if ball.status == CRUSHED:
-        meet_crushed(state, w, k, ball.part_index, ledger)
+        meet_crushed(state, w, k, ball.part_index)
         return 1
     planning = ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE
     bounces = state.worlds[w].bounces
-    _ball_hits(state, w, k, ledger)
+    _ball_hits(state, w, k)
     # A ball that is only planned anew has met nothing.
     return 0 if planning and state.worlds[w].bounces == bounces and ball.contact == FLYING else 1
 
 
 @function
-def _ball_hits(state: State, w: int, k: int, ledger: Table) -> None:
+def _ball_hits(state: State, w: int, k: int) -> None:
     ball = state.balls[w, k]
     # A kept hit is a duration from the flight's start, so that its own rounding is all there is.
     t = ball.hit_after if ball.next_kind == NEXT_HIT else since(ball.part_hi, ball.part_lo, ball.hi, ball.lo)
@@ -172,10 +182,10 @@ def _ball_hits(state: State, w: int, k: int, ledger: Table) -> None:
     update_sides(state, w, k, start, t)
     at_once = _is_over_at_once(ball, t) and not (ball.next_kind == NEXT_HIT and ball.hit_kind == RESOLVE)
     bounces = state.worlds[w].bounces
-    resolve(state, w, k, at_once, ledger)
+    resolve(state, w, k, at_once)
     ball.confined += state.worlds[w].bounces > bounces
     if ball.status == CRUSHED:
-        crush(state, w, k, ledger)
+        crush(state, w, k)
 
 
 @function
@@ -190,7 +200,7 @@ def restart(state: State, w: int) -> None:
     """Set world `w` back to time 0 with its parts where they start; balls are placed after this."""
     world = state.worlds[w]
     world.time_hi, world.time_lo = 0.0, 0.0
-    world.bounces, world.speed_capped, world.rows = 0, 0, 0
+    world.bounces, world.speed_capped = 0, 0
     world.events, world.events_before = 0, 0
     world.drag_hi, world.drag_lo = -1.0, 0.0
     let_all_go(state, w)

@@ -4,7 +4,7 @@ First the flights of the balls that it carries end there, then it moves otherwis
 against what they touch, and every ball that it can reach searches it anew.
 """
 
-from bounce_env.engine.compile.jit import Record, Table, function, where
+from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.detect.schedule import schedule_parts
 from bounce_env.engine.events.flights import disturb
 from bounce_env.engine.memory.ledger import append_stop
@@ -116,33 +116,31 @@ def end_rides(state: State, w: int, m: int) -> None:
 
 
 @where("parts", inline=False)
-def stop_part(state: State, w: int, m: int, ledger: Table) -> None:
+def stop_part(state: State, w: int, m: int) -> None:
     """Let part `m` come to a stop now: it stands there, or turns back if it is a shuttle."""
     motion, shape = state.motions[w, m], state.parts[state.worlds[w].scene, m]
     hi, lo = part_stop_instant(motion, shape)
-    _halt_part(state, w, m, shape.span if motion.velocity > 0.0 else 0.0, False, hi, lo, ledger)
+    _halt_part(state, w, m, shape.span if motion.velocity > 0.0 else 0.0, False, hi, lo)
 
 
 @where("parts", inline=False)
-def block_part(state: State, w: int, m: int, ledger: Table) -> None:
+def block_part(state: State, w: int, m: int) -> None:
     """Let part `m` stop now, against a ball that is crushed."""
     world = state.worlds[w]
     hi, lo = world.time_hi, world.time_lo
-    _halt_part(
-        state, w, m, kept_part_offset(state.motions[w, m], state.parts[world.scene, m], hi, lo), True, hi, lo, ledger
-    )
+    _halt_part(state, w, m, kept_part_offset(state.motions[w, m], state.parts[world.scene, m], hi, lo), True, hi, lo)
 
 
 @function
-def _halt_part(state: State, w: int, m: int, offset: float, blocked: bool, hi: float, lo: float, ledger: Table) -> None:
+def _halt_part(state: State, w: int, m: int, offset: float, blocked: bool, hi: float, lo: float) -> None:
     """Let part `m` stop at the instant (hi, lo): where it is if it is `blocked`, or as it comes to a stop."""
     end_rides(state, w, m)
     _release_caught(state, w, m)
     part = moving_part(state, w, m)
     if is_dragged_part(part):
-        _halt_wall(state, w, m, blocked, hi, lo, ledger)
+        _halt_wall(state, w, m, blocked, hi, lo)
     else:
-        _halt_capsule(state, w, part, offset, hi, lo, ledger)
+        _halt_capsule(state, w, part, offset, hi, lo)
     replan_part(state, w, m)
 
 
@@ -163,7 +161,7 @@ def turns_back(motion: Record, shape: Record, offset: float) -> bool:
 
 
 @function
-def _halt_capsule(state: State, w: int, part: MovingPart, offset: float, hi: float, lo: float, ledger: Table) -> None:
+def _halt_capsule(state: State, w: int, part: MovingPart, offset: float, hi: float, lo: float) -> None:
     """Let a part stop at `offset`: it stands there, or turns back if it is a shuttle that has room for it."""
     motion, shape = part.motion, part.shape
     motion.hi, motion.lo, motion.offset = hi, lo, offset
@@ -176,11 +174,11 @@ def _halt_capsule(state: State, w: int, part: MovingPart, offset: float, hi: flo
     if turns:
         motion.command = motion.velocity
     after = part_surface_velocity(part, core, rx, ry)
-    append_stop(ledger, state.worlds[w], shape.element, hi, (core.x + rx, core.y + ry), before, after)
+    append_stop(state, w, shape.element, hi, (core.x + rx, core.y + ry), before, after)
 
 
 @where("ends")
-def _halt_wall(state: State, w: int, m: int, blocked: bool, hi: float, lo: float, ledger: Table) -> None:
+def _halt_wall(state: State, w: int, m: int, blocked: bool, hi: float, lo: float) -> None:
     """Let the ends of a dragged wall stop: both if they are `blocked`, or what comes to a stop.
 
     The ledger has a row for each of its two ends.
@@ -193,5 +191,5 @@ def _halt_wall(state: State, w: int, m: int, blocked: bool, hi: float, lo: float
         stop_dragged_ends(motion, ends)
     else:
         take_next_stop_of_dragged_ends(motion, ends, limits, hi, lo)
-    append_stop(ledger, world, element, hi, (ends.x0, ends.y0), start, (ends.vx0, ends.vy0))
-    append_stop(ledger, world, element, hi, (ends.x1, ends.y1), end, (ends.vx1, ends.vy1))
+    append_stop(state, w, element, hi, (ends.x0, ends.y0), start, (ends.vx0, ends.vy0))
+    append_stop(state, w, element, hi, (ends.x1, ends.y1), end, (ends.vx1, ends.vy1))

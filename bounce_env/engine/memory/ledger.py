@@ -1,8 +1,8 @@
-"""The ledger, and the counts of hits: what a world tells of its events. Nothing else writes rows."""
+"""What a world tells of its events: the ledger, the moments after them, counts of hits. Nothing else writes these."""
 
 from typing import NamedTuple
 
-from bounce_env.engine.compile.jit import Record, Table, function
+from bounce_env.engine.compile.jit import function, routine, where
 from bounce_env.engine.memory.records import CROSSING, PART_STOPS
 from bounce_env.engine.memory.state import State
 
@@ -36,28 +36,30 @@ class Row(NamedTuple):
     uy: float
 
 
-@function
-def append_row(ledger: Table, world: Record, row: Row) -> None:
-    """Write a row into the ledger, where there is one."""
-    if ledger is None:
+@routine
+def append_row(state: State, w: int, row: Row) -> None:
+    """Write a row into the ledger, where this world is recorded."""
+    ledger, head = state.recording.ledger, state.recording.head[0]
+    if head.world != w:
         return
-    out = ledger[world.rows]
+    if head.rows == ledger.shape[0]:
+        head.lost += 1
+        return
+    out = ledger[head.rows]
     out.time, out.ball, out.element, out.kind = row.time, row.ball, row.element, row.kind
     out.x, out.y, out.nx, out.ny = row.x, row.y, row.nx, row.ny
     out.vx0, out.vy0, out.vx1, out.vy1 = row.vx0, row.vy0, row.vx1, row.vy1
     out.ux, out.uy = row.ux, row.uy
-    world.rows += 1
+    head.rows += 1
 
 
 @function
-def append_contact(
-    ledger: Table, world: Record, ball: Record, k: int, kind: int, surface: Surface, vx0: float, vy0: float
-) -> None:
+def append_contact(state: State, w: int, k: int, kind: int, surface: Surface, vx0: float, vy0: float) -> None:
     """Write that ball `k`, of velocity (vx0, vy0) [m/s] before, is where it is and has its present velocity now."""
-    s = surface
+    ball, s = state.balls[w, k], surface
     append_row(
-        ledger,
-        world,
+        state,
+        w,
         Row(
             ball.hi, k, s.element, kind, ball.x, ball.y, s.nx, s.ny, vx0, vy0, ball.vx, ball.vy, s.ux, s.uy,
         ),
@@ -65,22 +67,74 @@ def append_contact(
 
 
 @function
-def append_crossing(
-    ledger: Table, world: Record, ball: Record, k: int, surface: Surface, x: float, y: float, vx: float, vy: float
-) -> None:
+def append_crossing(state: State, w: int, k: int, surface: Surface, x: float, y: float, vx: float, vy: float) -> None:
     """Write that ball `k` crosses an element at (x, y) [m], at its next event."""
-    s = surface
-    append_row(ledger, world, Row(ball.next_hi, k, s.element, CROSSING, x, y, s.nx, s.ny, vx, vy, vx, vy, s.ux, s.uy))
+    time, s = state.balls[w, k].next_hi, surface
+    append_row(state, w, Row(time, k, s.element, CROSSING, x, y, s.nx, s.ny, vx, vy, vx, vy, s.ux, s.uy))
 
 
 @function
 def append_stop(
-    ledger: Table, world: Record, element: int, time: float, place: tuple[float, float],
+    state: State, w: int, element: int, time: float, place: tuple[float, float],
     before: tuple[float, float], after: tuple[float, float],
 ) -> None:  # fmt: skip
     """Write that a part stops or turns back: a place on it [m], and that place's velocity [m/s] before and after."""
     (x, y), (vx0, vy0), (vx1, vy1) = place, before, after
-    append_row(ledger, world, Row(time, -1, element, PART_STOPS, x, y, 0.0, 0.0, vx0, vy0, vx1, vy1, 0.0, 0.0))
+    append_row(state, w, Row(time, -1, element, PART_STOPS, x, y, 0.0, 0.0, vx0, vy0, vx1, vy1, 0.0, 0.0))
+
+
+@function
+def is_page_full(state: State, w: int, rows: int) -> bool:
+    """Return whether the recording of world `w` lacks room for `rows` rows and a moment."""
+    recording, head = state.recording, state.recording.head[0]
+    moments = recording.instants.shape[0]
+    return head.world == w and (
+        head.rows + rows > recording.ledger.shape[0] or (moments > 0 and head.moments == moments)
+    )
+
+
+@routine
+def keep_moment(state: State, w: int) -> None:
+    """Write from what state the balls and parts of world `w` go on now, where it is recorded with room for moments."""
+    recording, head = state.recording, state.recording.head[0]
+    if head.world != w or recording.instants.shape[0] == 0:
+        return
+    if head.moments == recording.instants.shape[0]:
+        head.lost += 1
+        return
+    i, world = head.moments, state.worlds[w]
+    recording.instants[i, 0], recording.instants[i, 1] = world.time_hi, world.time_lo
+    for k in range(state.balls.shape[1]):
+        recording.balls[i, k] = state.balls[w, k]
+    _keep_slides(state, w, i)
+    _keep_carried(state, w, i)
+    _keep_parts(state, w, i)
+    _keep_ends(state, w, i)
+    head.moments += 1
+
+
+@where("curve_slides")
+def _keep_slides(state: State, w: int, i: int) -> None:
+    for k in range(state.balls.shape[1]):
+        state.recording.curve_slides[i, k] = state.curve_slides[w, k]
+
+
+@where("carried")
+def _keep_carried(state: State, w: int, i: int) -> None:
+    for k in range(state.balls.shape[1]):
+        state.recording.carried[i, k] = state.carried[w, k]
+
+
+@where("motions")
+def _keep_parts(state: State, w: int, i: int) -> None:
+    for m in range(state.motions.shape[1]):
+        state.recording.motions[i, m] = state.motions[w, m]
+
+
+@where("ends")
+def _keep_ends(state: State, w: int, i: int) -> None:
+    for m in range(state.ends.shape[1]):
+        state.recording.ends[i, m] = state.ends[w, m]
 
 
 @function

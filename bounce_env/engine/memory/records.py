@@ -59,7 +59,6 @@ WORLD = record(
     events="i8", events_before="i8",  # of the present call or step, and of those before it since reset
     drag_hi="f8", drag_lo="f8",  # when drag acted last
     dirty="i8",  # whether `hits` has entries of the last step
-    rows="i8",  # of the ledger in use
 )  # fmt: skip
 
 # What a step without events reads comes first: it lies together in memory.
@@ -168,6 +167,11 @@ LEDGER = record(
     time="f8", ball="i8", element="i8", kind="i8", x="f8", y="f8", nx="f8", ny="f8",
     vx0="f8", vy0="f8", vx1="f8", vy1="f8", ux="f8", uy="f8",
 )  # fmt: skip
+RECORDING = record(
+    world="i8",  # that is recorded, or NO_WORLD
+    rows="i8", moments="i8", lost="i8",  # of the ledger and of the moments in use; how many found no room
+)  # fmt: skip
+NO_WORLD = -1
 
 # Surfaces that one ball can touch at one instant; more than these are not seen.
 TOUCHES = 16

@@ -19,9 +19,12 @@ from bounce_env.engine.memory.records import (
     COOLING,
     CURVE_SLIDE,
     ENDS,
+    LEDGER,
     MEMBER,
     MOTION,
+    NO_WORLD,
     PAIR,
+    RECORDING,
     TOUCH,
     TOUCHES,
     WORLD,
@@ -29,6 +32,22 @@ from bounce_env.engine.memory.records import (
     Array,
 )
 from bounce_env.scene import Feature
+
+
+class Recording(NamedTuple):
+    """What is kept of one world's events, as long as it is recorded: see `memory.ledger`.
+
+    A moment is the state from which balls and parts go on at one instant: copies of these members of `State`.
+    """
+
+    head: Array  # (1,) RECORDING
+    ledger: Array  # (rows,) LEDGER
+    instants: Array  # (moments, 2) of each, as a sum of two floats [s]
+    balls: Array  # (moments, balls)
+    curve_slides: Table  # (moments, balls); None as in `State`, as those that follow
+    carried: Table
+    motions: Table  # (moments, parts)
+    ends: Table
 
 
 class State(NamedTuple):
@@ -49,6 +68,7 @@ class State(NamedTuple):
     turns: Table  # (scenes, parts) int8: 1 or -1, which way a part turns; 0 slides
     drag_limits: Table  # (scenes, parts) DRAG_LIMITS; None: no scene has a wall that is dragged
     drags: Table  # (scenes,) factor on the velocity at each instant of a command
+    recording: Recording  # of one of the worlds, or of none
     # The worlds: first axis worlds.
     worlds: Array
     balls: Array  # (worlds, balls)
@@ -79,14 +99,24 @@ _FIRST_OF_WORLDS = State._fields.index("worlds")
 
 def moving_arrays(state: State) -> tuple[Array, ...]:
     """Return what changes while worlds are played: the arrays with a row for each world."""
-    return tuple(array for array in state[_FIRST_OF_WORLDS:] if array is not None)
+    arrays: tuple[Any, ...] = state[_FIRST_OF_WORLDS:]
+    return tuple(array for array in arrays if array is not None)
 
 
 def copy_of_world(state: State, w: int) -> State:
     """Return a copy of world `w` alone, beside the same scenes."""
     worlds = zip(State._fields, state, strict=True)
     rows = {name: array[w : w + 1].copy() for name, array in [*worlds][_FIRST_OF_WORLDS:] if array is not None}
-    return state._replace(**rows)
+    return with_recording(state._replace(**rows))
+
+
+def with_recording(state: State, rows: int = 0, moments: int = 0) -> State:
+    """Return the same state with room to record a world: so many rows of the ledger, and so many moments."""
+    moving = (state.balls, state.curve_slides, state.carried, state.motions, state.ends)
+    kept: list[Any] = [None if a is None else np.zeros((moments, *a.shape[1:]), a.dtype) for a in moving]
+    head = np.zeros(1, RECORDING)
+    head["world"] = NO_WORLD
+    return state._replace(recording=Recording(head, np.zeros(rows, LEDGER), np.zeros((moments, 2)), *kept))
 
 
 def new_state(tables: dict[str, Any], worlds: int, balls: int, present: frozenset[Feature]) -> State:
@@ -98,8 +128,10 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, present: frozense
     def sides(table: Table) -> Array | None:
         return None if table is None else np.zeros((worlds, balls, table.shape[1]), np.int8)
 
-    return State(
+    nothing = np.zeros(0)
+    state = State(
         **tables,
+        recording=Recording(*[nothing] * len(Recording._fields)),
         worlds=np.zeros(worlds, WORLD),
         balls=np.zeros((worlds, balls), BALL),
         motions=None if parts is None else np.zeros((worlds, parts.shape[1]), MOTION),
@@ -123,3 +155,4 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, present: frozense
         cooling=np.zeros((worlds, elements.shape[1]), COOLING) if Feature.COOLDOWN in present else None,
         hits=np.zeros((worlds, elements.shape[1]), np.int64),
     )
+    return with_recording(state)

@@ -102,7 +102,7 @@ def _play(rules: Rules, game: GameState, actions: Array, w: int) -> float:
         move(state, w, part, clipped(game.held[w, 0]))
         episode.frames += frames
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
-        code = run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
+        code = run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events)
         if code != DONE or state.balls[w, 0].status == OUT:
             break
     points = count_points(rules, game, w)

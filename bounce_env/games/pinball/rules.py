@@ -122,7 +122,7 @@ def play(rules: Rules, game: GameState, actions: Array, w: int) -> float:
         resume(state, w)
         episode.frames += 1
         # From the count of frames, not by adding up: the same instant whatever the frame skip.
-        code = run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events, None)
+        code = run(state, w, episode.frames / rules.pace.fps, 0.0, rules.pace.max_events)
         if code != DONE:
             episode.end = OUT_OF_BUDGET
         elif memory.serving:

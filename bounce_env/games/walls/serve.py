@@ -36,7 +36,7 @@ def serve(rules: Rules, game: GameState, w: int) -> None:
 @routine
 def advance(state: State, w: int, until: float, max_events: int) -> int:
     """Process the events of world `w` up to an instant [s] since its launch; see `engine.events.loop.run`."""
-    return run(state, w, until, 0.0, max_events, None)
+    return run(state, w, until, 0.0, max_events)
 
 
 @function

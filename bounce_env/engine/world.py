@@ -18,17 +18,17 @@ from bounce_env.engine.arguments import (
 )
 from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import from_python
-from bounce_env.engine.events.loop import PAGE_FULL
+from bounce_env.engine.events.loop import ANY_BOUNCES, PAGE_FULL
 from bounce_env.engine.memory.records import NO_WORLD, OUT, Counts
-from bounce_env.engine.memory.state import State, with_recording
+from bounce_env.engine.memory.state import Recording, State, taken, with_recording
 from bounce_env.engine.motion.parts import part_offset_at
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import features_of_worlds, forced_features, pack, switch_round_ends
 from bounce_env.engine.placement import Core, part_cores_at_start, place_clear, separate_placed_balls
+from bounce_env.engine.recorded import Recorded, recorded_of
 from bounce_env.engine.snapshot import restore_bytes, snapshot_bytes
 from bounce_env.engine.world_kernels import (
     world_advance_to,
-    world_advance_until,
     world_begin_call,
     world_command_part,
     world_command_wall,
@@ -43,7 +43,7 @@ from bounce_env.wording import nearest, numbers, real, shown, whole
 
 Floats = npt.NDArray[np.float64]
 
-_LEDGER_ROWS = 1024
+_LEDGER_ROWS, _MOMENTS = 1024, 1024
 _offset_at = from_python(part_offset_at)
 
 
@@ -65,10 +65,12 @@ class World:
         self.scene = scene
         self._balls = whole("balls", balls, 1, MAX_BALLS)
         self._forced = forced_features(scene, features) | {Feature.SWITCHES}
+        self._is_to_be_recorded = False
         self._state = self._packed(scene)
         self._bound = bind(self._state)
         self._parts = scene.parts
         self._started = False
+        self._recorded: list[Recording] | None = None
 
     def reset(self, *, position: npt.ArrayLike, velocity: npt.ArrayLike) -> None:
         """Time 0, parts where they start, the balls at `position` [m] with `velocity` [m/s].
@@ -84,9 +86,29 @@ class World:
         for k, (x, y) in enumerate(at.tolist()):
             at[k] = place_clear(self.scene, cores, x, y)
         separate_placed_balls(self.scene, at)
+        if self._is_to_be_recorded:
+            self._recorded = []
         world_reset(self._bound, at, speed)
         self._switch_ends()
         self._started = True
+
+    def record(self, on: bool = True) -> None:
+        """Keep all that happens from the next `reset` on, for `recorded`; with False: no longer.
+
+        Recording changes no bit of the motion. Some kilobytes are kept for each event and each call.
+        """
+        if not isinstance(on, bool | np.bool_):
+            raise ValueError(f"on = {shown(on)}: must be True or False")
+        self._is_to_be_recorded, self._recorded = bool(on), None
+        self._state = self._with_pages(self._state)
+        self._bound = bind(self._state)
+
+    def recorded(self) -> Recorded:
+        """Return what has happened since the last `reset`, up to now. Raises RuntimeError where it was not recorded."""
+        self._check_started()
+        if self._recorded is None:
+            raise RuntimeError("nothing is recorded: call record(), and then reset()")
+        return recorded_of(self.scene, self._state, self._recorded)
 
     def advance(self, seconds: float, *, ledger: bool = False, max_events: int = MAX_EVENTS) -> npt.NDArray[Any] | None:
         """Let `seconds` pass; return the ledger of this call if asked for, otherwise None.
@@ -118,18 +140,8 @@ class World:
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
         hi, lo = world_begin_call(self._bound, seconds)
-        if not ledger:
-            world_advance_to(self._bound, hi, lo, max_events)
-            return None
-        recording = self._state.recording
-        head, pages = recording.head[0], []
-        head.world, code = 0, PAGE_FULL
-        while code == PAGE_FULL:
-            head.rows = 0
-            code = world_advance_to(self._bound, hi, lo, max_events)
-            pages.append(recording.ledger[: head.rows].copy())
-        head.world = NO_WORLD
-        return np.concatenate(pages)
+        pages = self._advance_to(hi, lo, max_events, keeps=ledger)
+        return np.concatenate([page.ledger for page in pages]) if ledger else None
 
     def advance_until(self, bounces: int, seconds: float, *, max_events: int = MAX_EVENTS) -> int:
         """Let time pass until the balls have bounced `bounces` times more; return how often they have.
@@ -142,7 +154,8 @@ class World:
         bounces = whole("bounces", bounces, 1, MOST_EVENTS, ">= 1, a whole number")
         max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
         before = self.counts.bounces
-        world_advance_until(self._bound, before + bounces, real("seconds", seconds, 0.0, LARGEST, SECONDS), max_events)
+        hi, lo = world_begin_call(self._bound, real("seconds", seconds, 0.0, LARGEST, SECONDS))
+        self._advance_to(hi, lo, max_events, before + bounces)
         return self.counts.bounces - before
 
     def command(self, name: str, value: float | bool | npt.ArrayLike) -> None:
@@ -232,11 +245,34 @@ class World:
         for m in range(len(scene.parts)):
             world_resume_part(bound, m)
         self.scene, self._state, self._bound, self._parts = scene, state, bound, scene.parts
+        self._recorded = None
 
     def _packed(self, scene: Scene) -> State:
-        """Return the state of a world of a scene, with a page for its ledger."""
-        state = pack([scene], balls=self._balls, features=self._forced)
-        return with_recording(state, rows=_LEDGER_ROWS * self._balls)
+        """Return the state of a world of a scene, with pages for what is recorded of it."""
+        return self._with_pages(pack([scene], balls=self._balls, features=self._forced))
+
+    def _with_pages(self, state: State) -> State:
+        moments = _MOMENTS if self._is_to_be_recorded else 0
+        return with_recording(state, rows=_LEDGER_ROWS * self._balls, moments=moments)
+
+    def _advance_to(
+        self, hi: float, lo: float, max_events: int, bounces: int = ANY_BOUNCES, *, keeps: bool = False
+    ) -> list[Recording]:
+        """Advance to an instant; returns what was recorded on the way, page by page, where the world is recorded.
+
+        keeps: it is recorded for this call.
+        """
+        recording, pages = self._state.recording, []
+        head, code = recording.head[0], PAGE_FULL
+        head.world = 0 if keeps or self._recorded is not None else NO_WORLD
+        while code == PAGE_FULL:
+            code = world_advance_to(self._bound, hi, lo, max_events, bounces)
+            if head.world == 0:
+                pages.append(taken(recording))
+        head.world = NO_WORLD
+        if self._recorded is not None:
+            self._recorded += pages
+        return pages
 
     def _move_parts(self, scene: Scene, state: State) -> None:
         """Put the parts of a new scene, at rest, where those of the same name are, with their commands."""

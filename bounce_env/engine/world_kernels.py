@@ -29,16 +29,10 @@ def world_begin_call(state: State, seconds: float) -> tuple[float, float]:
 
 
 @kernel
-def world_advance_to(state: State, hi: float, lo: float, max_events: int) -> int:
-    code: int = run(state, 0, hi, lo, max_events, None, True)
+def world_advance_to(state: State, hi: float, lo: float, max_events: int, bounces: int) -> int:
+    """Advance to an instant, or until there have been `bounces` since reset; see `events.loop.run`."""
+    code: int = run(state, 0, hi, lo, max_events, bounces, True)
     return code
-
-
-@kernel
-def world_advance_until(state: State, bounces: int, seconds: float, max_events: int) -> None:
-    """Advance until there have been `bounces` since reset, at most `seconds`."""
-    hi, lo = begin_call(state, 0, seconds)
-    run(state, 0, hi, lo, max_events, bounces)
 
 
 @kernel

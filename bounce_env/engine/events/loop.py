@@ -6,7 +6,7 @@ these before parts, and each in its order.
 
 import math
 
-from bounce_env.engine.compile.jit import NumberOrNone, Record, function, where
+from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.contact.arrival import end_flight, snap_to_hit
 from bounce_env.engine.contact.collisions import collide
 from bounce_env.engine.contact.resolve import resolve
@@ -28,6 +28,9 @@ from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED, UN
 # How a run of the loop ends.
 DONE, BUDGET_SPENT, PAGE_FULL, BOUNCED = 0, 1, 2, 3
 
+ANY_BOUNCES = 2**62
+"""More than there ever are."""
+
 # What comes next.
 NOTHING, OF_BALL, OF_PAIR, OF_PART = -1, 0, 1, 2
 
@@ -43,7 +46,7 @@ def run(
     until_hi: float,
     until_lo: float,
     max_events: int,
-    bounces: NumberOrNone = None,
+    bounces: int = ANY_BOUNCES,
     paged: bool = False,
 ) -> int:
     """Process the events of world `w` up to and including an instant; DONE, BUDGET_SPENT, PAGE_FULL or BOUNCED.
@@ -55,7 +58,7 @@ def run(
     world = state.worlds[w]
     keep_moment(state, w)
     while True:
-        if bounces is not None and world.bounces >= bounces:
+        if world.bounces >= bounces:
             return BOUNCED
         hi, lo, what, i, j = _next_event(state, w, until_hi, until_lo)
         if what == NOTHING:

@@ -119,6 +119,16 @@ def with_recording(state: State, rows: int = 0, moments: int = 0) -> State:
     return state._replace(recording=Recording(head, np.zeros(rows, LEDGER), np.zeros((moments, 2)), *kept))
 
 
+def taken(recording: Recording) -> Recording:
+    """Return what a recording holds, and empty it."""
+    head = recording.head.copy()
+    rows, moments = int(head[0]["rows"]), int(head[0]["moments"])
+    kept: list[Any] = [None if array is None else array[:moments].copy() for array in recording[2:]]
+    for name in ("rows", "moments", "lost"):
+        recording.head[name] = 0
+    return Recording(head, recording.ledger[:rows].copy(), *kept)
+
+
 def new_state(tables: dict[str, Any], worlds: int, balls: int, present: frozenset[Feature]) -> State:
     """Return zeroed worlds of `balls` balls each, with the features `present`, beside the scenes' `tables` by name."""
     parts, drag_limits, elements = tables["parts"], tables["drag_limits"], tables["elements"]

@@ -73,16 +73,18 @@ class Recorded(NamedTuple):
     end: float
 
 
-def recorded_of(scene: Scene, state: State, pages: Sequence[Recording]) -> Recorded:
-    """Return what the pages of a recorded world hold, up to its present time."""
+def recorded_of(scene: Scene, state: State, pages: Sequence[Recording], world: int, end: float) -> Recorded:
+    """Return what the pages of a recorded world of `state` hold, up to a time."""
     ledger = np.concatenate([page.ledger for page in pages] or [state.recording.ledger[:0]])
     balls, parts = range(state.balls.shape[1]), range(len(scene.parts))
     return Recorded(
         scene,
         ledger,
         tuple(tuple(_changes(_ball_path(page, i, k) for page, i in _moments(pages))) for k in balls),
-        tuple(tuple(_changes(_part_path(scene, state, page, i, m) for page, i in _moments(pages))) for m in parts),
-        float(state.worlds[0].time_hi),
+        tuple(
+            tuple(_changes(_part_path(scene, state, world, page, i, m) for page, i in _moments(pages))) for m in parts
+        ),
+        end,
     )
 
 
@@ -112,8 +114,8 @@ def _ball_path(page: Recording, i: int, k: int) -> BallPath:
     return BallPath(begin, b["x"], b["y"], b["vx"], b["vy"], b["ax"], b["ay"], out, None if out else bent)
 
 
-def _part_path(scene: Scene, state: State, page: Recording, i: int, m: int) -> PartPath:
-    part, motion, shape = scene.parts[m][1], _row(page.motions[i, m]), state.parts[state.worlds[0].scene, m]
+def _part_path(scene: Scene, state: State, world: int, page: Recording, i: int, m: int) -> PartPath:
+    part, motion, shape = scene.parts[m][1], _row(page.motions[i, m]), state.parts[state.worlds[world].scene, m]
     begin, offset, velocity = motion["hi"] + motion["lo"], motion["offset"], motion["velocity"]
     if isinstance(part, Wall):
         ends = _row(page.ends[i, m])

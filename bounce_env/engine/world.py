@@ -108,7 +108,7 @@ class World:
         self._check_started()
         if self._recorded is None:
             raise RuntimeError("nothing is recorded: call record(), and then reset()")
-        return recorded_of(self.scene, self._state, self._recorded)
+        return recorded_of(self.scene, self._state, self._recorded, 0, self.time)
 
     def advance(self, seconds: float, *, ledger: bool = False, max_events: int = MAX_EVENTS) -> npt.NDArray[Any] | None:
         """Let `seconds` pass; return the ledger of this call if asked for, otherwise None.

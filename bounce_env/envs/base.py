@@ -17,11 +17,13 @@ from bounce_env.games.actions import Buttons, Continuous, Discrete
 from bounce_env.games.batch import Batch
 from bounce_env.games.episode import DISABLED, RUNNING
 from bounce_env.games.game import Game
+from bounce_env.games.recorder import run_of
 from bounce_env.games.reset_options import checked_options, start_rows
 from bounce_env.games.state_copy import States
 from bounce_env.render import Picture, Window
 from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.render.window import display_problem
+from bounce_env.replay import Replay, replay_of
 from bounce_env.scene import Scene
 from bounce_env.wording import nearest, shown, whole
 
@@ -105,7 +107,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
     """A game as a Gymnasium environment; the games are its subclasses, whose docstrings name the keywords."""
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 30}  # noqa: RUF012 (Gymnasium's)
-    own_keywords: ClassVar[Mapping[str, Any]] = {"render_mode": None}
+    own_keywords: ClassVar[Mapping[str, Any]] = {"render_mode": None, "record_events": False}
     _vector_env: ClassVar[Any]  # of the same game, once it was asked for
 
     def __init__(self, **keywords: Any) -> None:
@@ -122,6 +124,11 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         self._seeded = False
         self._running = False
         self._time_limits: tuple[gym.Wrapper[Any, Any, Any, Any], ...] = ()
+        self._seed: int | None = None
+        if not isinstance(own["record_events"], bool):
+            raise ValueError(f"record_events = {shown(own['record_events'])}: must be True or False")
+        if own["record_events"]:
+            self.record()
 
     def __getstate__(self) -> dict[str, Any]:
         # Windows can be neither copied nor sent.
@@ -148,7 +155,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         super().reset(seed=seed)
         if seed is not None or not self._seeded:
             self._batch.seed(0, world_seed(self.np_random))
-            self._seeded = True
+            self._seeded, self._seed = True, self.np_random_seed
         self._batch.reset(np.ones(1, np.bool_), start)
         self._frames.update((0,))
         self._running = True
@@ -192,6 +199,23 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
             self._window = Window(self._frames.size, title, self.metadata["render_fps"])
         self._window.show(frame)
         return None
+
+    def record(self, on: bool = True) -> None:
+        """Keep all events from the next reset on, for `replay`; with False: no longer. It changes no bit of play."""
+        self._batch.record(0 if on else None)
+
+    def replay(self, *, last: bool = False) -> Replay:
+        """Return the present episode as a replay, as far as it has been played; last: the one before it.
+
+        Raises RuntimeError where it was not recorded: `record_events=True` or `record()` came after its reset.
+        """
+        recorder = self._batch.recorder
+        episode = None if recorder is None else recorder.last if last else recorder.present
+        if episode is None:
+            raise RuntimeError("nothing is recorded: make it with record_events=True, or call record(), then reset()")
+        kwargs = {} if self.spec is None else self.spec.kwargs
+        name = None if self.spec is None else self.spec.id
+        return replay_of(run_of(episode, self._batch.state, 0), id=name, kwargs=kwargs, seed=self._seed)
 
     def picture(self) -> Picture:
         """Return what a frame shows now. Raises ResetNeeded before the first reset."""

@@ -13,12 +13,13 @@ import numpy.typing as npt
 from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import interpreted
 from bounce_env.engine.memory.records import Array
-from bounce_env.engine.memory.state import State, moving_arrays
+from bounce_env.engine.memory.state import State, moving_arrays, with_recording
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack
 from bounce_env.games.episode import (
     END_REASONS,
     EPISODE,
+    RUNNING,
     SAME_STEP,
     TIME_LIMIT,
     GameState,
@@ -29,6 +30,7 @@ from bounce_env.games.episode import (
 )
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
+from bounce_env.games.recorder import MOMENTS, ROWS, Recorder, Step
 from bounce_env.games.state_copy import States, check_rows, clone_rows, restore_rows
 from bounce_env.games.timing import NO_STEP_LIMIT
 from bounce_env.scene import Scene, Sensor
@@ -63,6 +65,7 @@ class Batch:
         self._threads: ThreadPoolExecutor | None = None
         self._process = os.getpid()
         self._handle: Any = None
+        self.recorder: Recorder | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_threads": None, "_handle": None}
@@ -82,8 +85,33 @@ class Batch:
     def reset(self, mask: Mask, start: npt.NDArray[np.float64] | None = None) -> None:
         """Begin the next episode in the worlds of `mask`; `start` (worlds, 5): x, y, vx, vy, level; NaN: the seed's."""
         self._start[:] = np.nan if start is None else start
+        recorder = self.recorder
+        if recorder is not None and mask[recorder.world]:
+            recorder.begin(self.state)
         reset_worlds(self._bound(), mask)
         self._start[:] = np.nan
+        self._take_recording(stepped=False)
+
+    def record(self, world: int | None) -> None:
+        """Keep what happens in a world from its next reset on, in `recorder`; None: no longer."""
+        self.recorder = None if world is None else Recorder(world)
+        room = () if world is None else (ROWS, MOMENTS)
+        self.state = with_recording(self.state, *room)
+        self._handle = None
+        self.__dict__.pop("bound_state", None)
+
+    def _take_recording(self, *, stepped: bool) -> None:
+        recorder = self.recorder
+        if recorder is None:
+            return
+        w = recorder.world
+        episode, ended, world = self.episodes[w], self.results.ended[w], self.state.worlds[w]
+        step = None
+        if stepped:
+            over = ended["end"] != RUNNING
+            time, score = (ended["seconds"], ended["score"]) if over else (world["time_hi"], episode["score"])
+            step = Step(float(time), float(self.results.rewards[w]), float(score))
+        recorder.take(self.state, self.scene(w), int(episode["episodes"]), step)
 
     @cached_property
     def bound_state(self) -> Any:
@@ -119,6 +147,7 @@ class Batch:
             world, j = np.argwhere(~np.isfinite(controls))[0].tolist()
             place = f"{world}, {j}" if controls.shape[1] > 1 else f"{world}"
             raise ValueError(f"actions[{place}] = {controls[world, j]}: must be finite")
+        self._take_recording(stepped=True)
         return ended
 
     def _pool(self) -> ThreadPoolExecutor:
@@ -135,6 +164,8 @@ class Batch:
         """Let the worlds of `mask` go on from `states`; raises ValueError as `check_states` does."""
         self.check_states(states, mask)
         restore_rows(self._rows(), mask, states)
+        if self.recorder is not None and mask[self.recorder.world]:
+            self.recorder.interrupt(self.state)
         if self.game.owns_scenes:  # world w has row w of the tables for itself, wherever its state comes from
             self.state.worlds["scene"] = np.arange(self.worlds)
 

@@ -1,1 +1,48 @@
 """Replays: what happened in a world, exactly, in one HTML page that stands alone. docs/replay.md has the format."""
+
+import html
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bounce_env.engine.recorded import Recorded
+from bounce_env.files import replacing
+from bounce_env.replay.document import document_of, read_document, text_of
+from bounce_env.replay.page import page_of
+
+__all__ = ["Replay", "read_document", "replay_of"]
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """A run to look at: `save` writes the page, in a notebook it shows itself. document: see docs/replay.md."""
+
+    document: Mapping[str, Any]
+
+    @property
+    def html(self) -> str:
+        """The page, which loads nothing from elsewhere."""
+        return page_of(self.document)
+
+    @property
+    def json(self) -> str:
+        """The document alone."""
+        return text_of(self.document)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the page, or the document alone where the path ends in .json; returns the path."""
+        path = Path(path)
+        with replacing(path) as unfinished:
+            unfinished.write_text(self.json if path.suffix == ".json" else self.html, encoding="utf-8")
+        return path
+
+    def _repr_html_(self) -> str:
+        frame = 'width="100%" height="900" style="border: 0"'
+        return f'<iframe sandbox="allow-scripts" {frame} srcdoc="{html.escape(self.html)}"></iframe>'
+
+
+def replay_of(run: Recorded, **about: Any) -> Replay:
+    """Return the replay of a recorded run. about: what made it, as `id`, `kwargs` and `seed` of an environment."""
+    return Replay(document_of(run, about=about))

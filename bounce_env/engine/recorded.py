@@ -58,18 +58,28 @@ class PartPath(NamedTuple):
         return tuple(p + r * (time - self.begin) for p, r in zip(self.place, self.rate, strict=True))
 
 
+class Change(NamedTuple):
+    """At `time` [s] a field of an element becomes another: `disabled`, or `center` of a target that is put elsewhere."""
+
+    time: float
+    element: int
+    field: str
+    value: Any
+
+
 class Recorded(NamedTuple):
     """A run of a world from its reset on.
 
     ledger: all events, see `World.advance`. balls: the paths of each, one after the other. parts: those of each moving
     part, in the order of the scene: of a paddle or a bumper the centre x, y [m]; of a flipper its angle [rad]; of a
-    dragged wall its ends x, y, x, y [m]. end: the time up to which it goes [s].
+    dragged wall its ends x, y, x, y [m]. changes: of elements, in the order of time. end: up to when it goes [s].
     """
 
     scene: Scene
     ledger: npt.NDArray[Any]
     balls: tuple[tuple[BallPath, ...], ...]
     parts: tuple[tuple[PartPath, ...], ...]
+    changes: tuple[Change, ...]
     end: float
 
 
@@ -84,12 +94,13 @@ def recorded_of(scene: Scene, state: State, pages: Sequence[Recording], world: i
         tuple(
             tuple(_changes(_part_path(scene, state, world, page, i, m) for page, i in _moments(pages))) for m in parts
         ),
+        tuple(_switched(pages)),
         end,
     )
 
 
 def _moments(pages: Sequence[Recording]) -> Iterator[tuple[Recording, int]]:
-    return ((page, i) for page in pages for i in range(len(page.instants)))
+    return ((page, i) for page in pages for i in range(len(page.moments)))
 
 
 def _changes(paths: Iterator[Any]) -> Iterator[Any]:
@@ -101,6 +112,18 @@ def _changes(paths: Iterator[Any]) -> Iterator[Any]:
         last = path
     if last is not None:
         yield last
+
+
+def _switched(pages: Sequence[Recording]) -> Iterator[Change]:
+    """Return what was switched off, and on again."""
+    last: Any = None
+    for page, i in _moments(pages):
+        if page.disabled is None:
+            return
+        now = page.disabled[i]
+        for element in np.flatnonzero(now if last is None else now != last).tolist():
+            yield Change(float(page.moments[i]["hi"]), element, "disabled", bool(now[element]))
+        last = now
 
 
 def _ball_path(page: Recording, i: int, k: int) -> BallPath:

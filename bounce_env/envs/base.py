@@ -9,6 +9,7 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
+from gymnasium.envs.registration import EnvSpec
 
 from bounce_env.envs.keywords import HasKeywords
 from bounce_env.envs.observations import Frames
@@ -101,6 +102,21 @@ def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, d
         besides = ", ".join([*(f"options[{name!r}]" for name in others), *(["seed"] if seed is not None else [])])
         raise ValueError(f"options['snapshot']: must come without {besides}")
     return snapshot, others
+
+
+def episode_replay(batch: Batch, spec: EnvSpec | None, seed: int | None, *, last: bool) -> Replay:
+    """Return the present episode of the recorded world, or the one before it; RuntimeError where there is none."""
+    recorder = batch.recorder
+    episode = None if recorder is None else recorder.last if last else recorder.present
+    if recorder is None or episode is None:
+        raise RuntimeError("nothing is recorded: record() or record_events=True, and then reset()")
+    about = {} if spec is None else {"id": spec.id, "kwargs": spec.kwargs}
+    return replay_of(
+        run_of(episode, batch.state, recorder.world),
+        score=((step.time, step.score) for step in episode.steps),
+        lost=episode.lost,
+        about={**about, "seed": seed},
+    )
 
 
 class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
@@ -209,13 +225,7 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
 
         Raises RuntimeError where it was not recorded: `record_events=True` or `record()` came after its reset.
         """
-        recorder = self._batch.recorder
-        episode = None if recorder is None else recorder.last if last else recorder.present
-        if episode is None:
-            raise RuntimeError("nothing is recorded: make it with record_events=True, or call record(), then reset()")
-        kwargs = {} if self.spec is None else self.spec.kwargs
-        name = None if self.spec is None else self.spec.id
-        return replay_of(run_of(episode, self._batch.state, 0), id=name, kwargs=kwargs, seed=self._seed)
+        return episode_replay(self._batch, self.spec, self._seed, last=last)
 
     def picture(self) -> Picture:
         """Return what a frame shows now. Raises ResetNeeded before the first reset."""

@@ -11,7 +11,15 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from bounce_env.envs.base import BounceEnv, action_space, checked_render_mode, checked_seed, taken_snapshot, world_seed
+from bounce_env.envs.base import (
+    BounceEnv,
+    action_space,
+    checked_render_mode,
+    checked_seed,
+    episode_replay,
+    taken_snapshot,
+    world_seed,
+)
 from bounce_env.envs.keywords import HasKeywords
 from bounce_env.envs.observations import Frames
 from bounce_env.envs.one_world import OneWorld
@@ -22,6 +30,7 @@ from bounce_env.games.state_copy import States
 from bounce_env.games.timing import NO_STEP_LIMIT
 from bounce_env.render import Picture
 from bounce_env.render.lazy_pygame import load_pygame
+from bounce_env.replay import Replay
 from bounce_env.scene import Scene
 from bounce_env.wording import shown, whole
 
@@ -237,6 +246,14 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         self._begun = bool(self._seeded.all())
         self._ended[rows] = self._batch.episodes["end"][rows] != episode.RUNNING
         return self._observations()
+
+    def record(self, world: int | None) -> None:
+        """Keep all events of one world from its next reset on, for `replay`; None: of none any more."""
+        self._batch.record(None if world is None else whole("world", world, 0, self.num_envs - 1))
+
+    def replay(self, *, last: bool = False) -> Replay:
+        """Return the present episode of the recorded world as a replay, see the single environment."""
+        return episode_replay(self._batch, self.spec, None, last=last)
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""

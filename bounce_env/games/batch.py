@@ -19,6 +19,7 @@ from bounce_env.engine.packing import pack
 from bounce_env.games.episode import (
     END_REASONS,
     EPISODE,
+    FPS,
     RUNNING,
     SAME_STEP,
     TIME_LIMIT,
@@ -105,11 +106,11 @@ class Batch:
         if recorder is None:
             return
         w = recorder.world
-        episode, ended, world = self.episodes[w], self.results.ended[w], self.state.worlds[w]
-        step = None
-        if stepped:
-            over = ended["end"] != RUNNING
-            time, score = (ended["seconds"], ended["score"]) if over else (world["time_hi"], episode["score"])
+        episode, ended = self.episodes[w], self.results.ended[w]
+        step, over = None, ended["end"] != RUNNING
+        # Where an episode begins in place of a step there is none.
+        if stepped and (over or episode["episodes"] == recorder.number):
+            time, score = (ended["seconds"], ended["score"]) if over else (episode["frames"] / FPS, episode["score"])
             step = Step(float(time), float(self.results.rewards[w]), float(score))
         recorder.take(self.state, self.scene(w), int(episode["episodes"]), step)
 

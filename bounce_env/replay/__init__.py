@@ -2,7 +2,7 @@
 
 import html
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -43,6 +43,12 @@ class Replay:
         return f'<iframe sandbox="allow-scripts" {frame} srcdoc="{html.escape(self.html)}"></iframe>'
 
 
-def replay_of(run: Recorded, **about: Any) -> Replay:
-    """Return the replay of a recorded run. about: what made it, as `id`, `kwargs` and `seed` of an environment."""
-    return Replay(document_of(run, about=about))
+def replay_of(
+    run: Recorded, *, score: Iterable[tuple[float, float]] = (), lost: int = 0, about: Mapping[str, Any] | None = None
+) -> Replay:
+    """Return the replay of a recorded run, as of `World.recorded`.
+
+    score: from what time [s] on it was what. lost: how many events the recording had no room for. about: what made it,
+    as `id`, `kwargs` and `seed` of an environment.
+    """
+    return Replay(document_of(run, about=about, score=score, lost=lost))

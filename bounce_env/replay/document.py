@@ -19,8 +19,14 @@ _SHARE = 1e-11
 """How far a series may be from the path that it stands for, as a share of the scene's size."""
 
 
-def document_of(run: Recorded, *, about: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return the document of a recorded run. about: what made it, as `id`, `kwargs` and `seed` of an environment."""
+def document_of(
+    run: Recorded, *, about: Mapping[str, Any] | None = None, score: Iterable[tuple[float, float]] = (), lost: int = 0
+) -> dict[str, Any]:
+    """Return the document of a recorded run.
+
+    about: what made it, as `id`, `kwargs` and `seed` of an environment. score: from what time [s] on it was what. lost:
+    how many events the recording had no room for.
+    """
     left, bottom, right, top = run.scene.bounds
     size = max(right - left, top - bottom, run.scene.ball.radius)
     return {
@@ -37,9 +43,21 @@ def document_of(run: Recorded, *, about: Mapping[str, Any] | None = None) -> dic
             {"element": index, "paths": [_part(path) for path in paths]}
             for (index, _), paths in zip(run.scene.parts, run.parts, strict=True)
         ],
+        "changes": [[change.time, change.element, change.field, change.value] for change in run.changes],
+        "score": [[time, *_short([points])] for time, points in _new(score)],
+        "lost": lost,
         "kinds": [kind.name.lower().replace("_", " ") for kind in EventKind],
         "events": [_event(row) for row in run.ledger],
     }
+
+
+def _new(score: Iterable[tuple[float, float]]) -> Iterable[tuple[float, float]]:
+    """Return where the score is another than before; it is 0 at first."""
+    before = 0.0
+    for time, points in score:
+        if points != before:
+            yield time, points
+        before = points
 
 
 def _ball(paths: Iterable[BallPath], end: float, within: float) -> Iterable[list[Any]]:
@@ -63,12 +81,13 @@ def _part(path: PartPath) -> list[Any]:
 def _event(row: Any) -> list[Any]:
     """Return [time, kind, ball, element, x, y, nx, ny, vx0, vy0, vx1, vy1]."""
     whole = [float(row["time"]), int(row["kind"]), int(row["ball"]), int(row["element"])]
-    return whole + _short(float(row[name]) for name in ("x", "y", "nx", "ny", "vx0", "vy0", "vx1", "vy1"))
+    numbers = (float(row[name]) for name in ("x", "y", "nx", "ny", "vx0", "vy0", "vx1", "vy1"))
+    return whole + _short(numbers, digits=9)  # they are read; what is drawn are the paths
 
 
-def _short(numbers: Iterable[float]) -> list[float]:
-    """Return numbers without the digits that nobody sees: 13 of them, whole ones as integers."""
-    rounded = (float(f"{number:.13g}") for number in numbers)
+def _short(numbers: Iterable[float], digits: int = 13) -> list[float]:
+    """Return numbers of so many digits, whole ones as integers."""
+    rounded = (float(f"{number:.{digits}g}") for number in numbers)
     return [int(number) if number.is_integer() and abs(number) < 1e15 else number for number in rounded]
 
 

@@ -21,13 +21,25 @@ export function chebyshev(series, u) {
   return series[0] + u * b1 - b2;
 }
 
+/** Return the slope of a Chebyshev series at u: c1 U0 + 2 c2 U1 + ..., with U the polynomials of the second kind. */
+export function chebyshevSlope(series, u) {
+  let b1 = 0;
+  let b2 = 0;
+  for (let k = series.length - 1; k > 1; k--) [b1, b2] = [k * series[k] + 2 * u * b1 - b2, b1];
+  return series.length > 1 ? series[1] + 2 * u * b1 - b2 : 0;
+}
+
+/** Return where in its piece, from -1 to 1, an instant is. */
+function shareOf([begin, end], time) {
+  return Math.min(Math.max((2 * (time - begin)) / (end - begin) - 1, -1), 1);
+}
+
 /** Return the place [x, y] of a ball, of its paths, at an instant. */
 export function ballAt(paths, time) {
   const path = paths[lastBefore(paths, time)];
   if (path.length === 4) {
-    const [begin, end, x, y] = path;
-    const u = Math.min(Math.max((2 * (time - begin)) / (end - begin) - 1, -1), 1);
-    return [chebyshev(x, u), chebyshev(y, u)];
+    const u = shareOf(path, time);
+    return [chebyshev(path[2], u), chebyshev(path[3], u)];
   }
   const [begin, x, y, vx, vy, ax, ay] = path;
   const t = time - begin;
@@ -38,10 +50,8 @@ export function ballAt(paths, time) {
 export function velocityAt(paths, time) {
   const path = paths[lastBefore(paths, time)];
   if (path.length === 4) {
-    const h = Math.min(1e-6, 0.25 * (path[1] - path[0]));
-    const [a, b] = [Math.max(time - h, path[0]), Math.min(time + h, path[1])];
-    const [p, q] = [ballAt(paths, a), ballAt(paths, b)];
-    return [(q[0] - p[0]) / (b - a), (q[1] - p[1]) / (b - a)];
+    const [u, rate] = [shareOf(path, time), 2 / (path[1] - path[0])];
+    return [rate * chebyshevSlope(path[2], u), rate * chebyshevSlope(path[3], u)];
   }
   const t = time - path[0];
   return [path[3] + path[5] * t, path[4] + path[6] * t];
@@ -51,4 +61,16 @@ export function velocityAt(paths, time) {
 export function partAt(paths, time) {
   const [begin, place, rate] = paths[lastBefore(paths, time)];
   return place.map((number, i) => number + rate[i] * (time - begin));
+}
+
+/** Return the elements as they are at an instant: some are switched off, or put elsewhere, as a run goes on. */
+export function elementsAt(elements, changes, time) {
+  const now = elements.map((element) => ({ ...element }));
+  for (const [begin, index, field, value] of changes) if (begin <= time) now[index][field] = value;
+  return now;
+}
+
+/** Return the score at an instant. */
+export function scoreAt(score, time) {
+  return score.length && score[0][0] <= time ? score[lastBefore(score, time)][1] : 0;
 }

@@ -15,7 +15,7 @@ _FILES = resources.files("bounce_env.replay")
 def page_of(document: Mapping[str, Any]) -> str:
     """Return the page that shows a document."""
     style = (_FILES / "page.css").read_text(encoding="utf-8")
-    modules = [(_FILES / name).read_text(encoding="utf-8") for name in ("flight.js", "player.js")]
+    modules = [(_FILES / name).read_text(encoding="utf-8") for name in ("flight.js", "drawing.js", "player.js")]
     script = "\n".join(_without_modules(module) for module in modules)
     parts = {
         "SCRIPT_HASH": _hash(script),

@@ -1,20 +1,19 @@
 // Shows a replay: a canvas, the controls below it, and the list of events.
 "use strict";
-import { ballAt, lastBefore, partAt, velocityAt } from "./flight.js";
+import { ballAt, elementsAt, lastBefore, partAt, scoreAt, velocityAt } from "./flight.js";
+import { COLOURS, drawBall, drawPart, drawStanding, fit, inMetres, line, placeOf, trailOf, viewOf } from "./drawing.js";
 
 const TRAIL = 0.4; // seconds of the ball's way that are drawn
-const COLOURS = {
-  ground: "#0c0e1c", still: "#8a98c6", lively: "#ff5f84", moving: "#38dace", sensor: "#4e9c7e", drain: "#d4485a",
-  field: "rgba(96,104,232,0.16)", ball: "#fffcf0", trail: "255,214,150", mark: "#ffd696",
-};
+const JUMP = 1; // seconds by the arrow keys on the scene
 
 const replay = JSON.parse(document.getElementById("replay").textContent);
 const find = (id) => document.getElementById(id);
 const [canvas, clock, slider, speed, list, values] = ["scene", "clock", "time", "speed", "events", "values"].map(find);
 const context = canvas.getContext("2d");
-const still = document.createElement("canvas"); // what never moves, drawn once
-let [now, playing, last, pointer] = [0, false, null, null];
-let view = { scale: 1, x: 0, y: 0 };
+const standing = document.createElement("canvas"); // what stands, drawn where it changes only
+const moving = new Set(replay.parts.map((part) => part.element));
+let [now, playing, last, pointer, drawn] = [0, false, null, null, null];
+let [view, elements] = [null, replay.elements];
 
 const named = (index) => {
   const element = replay.elements[index];
@@ -24,102 +23,31 @@ const named = (index) => {
 const short = (number) => Number(number.toPrecision(6)).toString();
 
 function resize() {
-  const ratio = window.devicePixelRatio || 1;
   const [left, bottom, right, top] = replay.bounds;
   const margin = 0.04 * Math.max(right - left, top - bottom) + replay.ball_radius;
-  const [wide, high] = [right - left + 2 * margin, Math.max(top - bottom, 0.3 * (right - left)) + 2 * margin];
-  const width = canvas.parentElement.clientWidth;
-  const scale = Math.min(width / wide, (0.72 * window.innerHeight) / high);
-  canvas.style.width = `${wide * scale}px`;
-  canvas.style.height = `${high * scale}px`;
-  for (const each of [canvas, still]) [each.width, each.height] = [wide * scale * ratio, high * scale * ratio];
-  view = { scale: scale * ratio, x: left - margin, y: bottom - margin };
-  drawStill();
+  view = viewOf(replay.bounds, margin, canvas.parentElement.clientWidth, 0.72 * window.innerHeight);
+  fit(view, canvas, standing);
+  drawn = null;
   draw();
 }
 
-function transform(target) {
-  target.setTransform(view.scale, 0, 0, -view.scale, -view.x * view.scale, target.canvas.height + view.y * view.scale);
-  target.lineWidth = 1.6 / view.scale * (window.devicePixelRatio || 1);
-  target.lineCap = "round";
-}
-
-function colourOf(element) {
-  if (element.type === "sensor") return element.drain ? COLOURS.drain : COLOURS.sensor;
-  return element.b > 1 || element.kick > 0 ? COLOURS.lively : COLOURS.still;
-}
-
-function line(target, [x0, y0], [x1, y1]) {
-  target.beginPath();
-  target.moveTo(x0, y0);
-  target.lineTo(x1, y1);
-  target.stroke();
-}
-
-function disc(target, [x, y], radius, fill) {
-  target.beginPath();
-  target.arc(x, y, radius, 0, 2 * Math.PI);
-  fill ? target.fill() : target.stroke();
-}
-
-function drawStill() {
-  const target = still.getContext("2d");
-  target.setTransform(1, 0, 0, 1, 0, 0);
-  target.fillStyle = COLOURS.ground;
-  target.fillRect(0, 0, still.width, still.height);
-  transform(target);
-  const moving = new Set(replay.parts.map((part) => part.element));
-  replay.elements.forEach((element, index) => {
-    if (moving.has(index)) return;
-    target.strokeStyle = target.fillStyle = colourOf(element);
-    target.setLineDash(element.type === "sensor" ? [4 * target.lineWidth, 3 * target.lineWidth] : []);
-    if (element.type === "field") {
-      target.fillStyle = COLOURS.field;
-      target.beginPath();
-      element.corners.forEach(([x, y]) => target.lineTo(x, y));
-      target.fill();
-    } else if (element.type === "arc") {
-      target.beginPath();
-      target.arc(...element.center, element.radius, element.start_angle, element.end_angle);
-      target.stroke();
-    } else if (element.center) disc(target, element.center, element.radius, false);
-    else if (element.start) line(target, element.start, element.end);
-  });
-}
-
-function drawPart({ element: index, paths }) {
-  const [element, place] = [replay.elements[index], partAt(paths, now)];
-  context.strokeStyle = COLOURS.moving;
-  if (place.length === 4) return line(context, place.slice(0, 2), place.slice(2));
-  const kept = context.lineWidth;
-  if (place.length === 1) {
-    const [x, y] = element.pivot;
-    context.lineWidth = 2 * element.radius;
-    line(context, [x, y], [x + element.length * Math.cos(place[0]), y + element.length * Math.sin(place[0])]);
-  } else if (element.half_width !== undefined) {
-    const [dx, dy] = [element.rail_end[0] - element.rail_start[0], element.rail_end[1] - element.rail_start[1]];
-    const share = element.half_width / Math.hypot(dx, dy);
-    context.lineWidth = 2 * element.radius;
-    line(context, [place[0] - share * dx, place[1] - share * dy], [place[0] + share * dx, place[1] + share * dy]);
-  } else disc(context, place, element.radius, false);
-  context.lineWidth = kept;
+/** What has changed up to now is drawn anew only when there is more, or less, of it. */
+function drawChanged() {
+  const count = replay.changes.filter(([begin]) => begin <= now).length;
+  if (count === drawn) return;
+  drawn = count;
+  elements = elementsAt(replay.elements, replay.changes, now);
+  drawStanding(standing.getContext("2d"), view, elements, moving);
 }
 
 function draw() {
+  drawChanged();
   context.setTransform(1, 0, 0, 1, 0, 0);
-  context.drawImage(still, 0, 0);
-  transform(context);
-  replay.parts.forEach(drawPart);
-  const radius = Math.max(replay.ball_radius, 2.5 / view.scale);
+  context.drawImage(standing, 0, 0);
+  inMetres(context, view);
+  for (const { element, paths } of replay.parts) drawPart(context, elements[element], partAt(paths, now));
   for (const paths of replay.balls) {
-    for (let k = 40; k > 0; k--) {
-      const then = now - (TRAIL * k) / 40;
-      if (then < 0) continue;
-      context.fillStyle = `rgba(${COLOURS.trail},${0.5 * (1 - k / 40)})`;
-      disc(context, ballAt(paths, then), 0.5 * radius, true);
-    }
-    context.fillStyle = COLOURS.ball;
-    disc(context, ballAt(paths, now), radius, true);
+    drawBall(context, view, trailOf((time) => ballAt(paths, time), now, TRAIL), replay.ball_radius);
   }
   drawNormal();
   tell();
@@ -129,7 +57,7 @@ function drawNormal() {
   const event = replay.events[list.selectedIndex];
   if (!event || event[0] !== now || event[2] < 0) return;
   const [x, y, nx, ny] = event.slice(4, 8);
-  const [r, length] = [replay.ball_radius, 40 / view.scale];
+  const [r, length] = [replay.ball_radius, (40 * view.ratio) / view.scale];
   context.strokeStyle = COLOURS.mark;
   line(context, [x - r * nx, y - r * ny], [x - r * nx + length * nx, y - r * ny + length * ny]);
 }
@@ -138,10 +66,12 @@ function tell() {
   clock.textContent = `${now.toFixed(4)} s`;
   slider.value = String(now);
   slider.setAttribute("aria-valuetext", clock.textContent);
-  const words = replay.balls.map((paths, k) => {
+  const words = replay.score.length ? [`score: ${short(scoreAt(replay.score, now))}`] : [];
+  replay.balls.forEach((paths, k) => {
     const [[x, y], [vx, vy]] = [ballAt(paths, now), velocityAt(paths, now)];
-    return `ball ${k}: ${short(x)}, ${short(y)} m; ${short(vx)}, ${short(vy)} m/s (${short(Math.hypot(vx, vy))})`;
+    words.push(`ball ${k}: ${short(x)}, ${short(y)} m; ${short(vx)}, ${short(vy)} m/s (${short(Math.hypot(vx, vy))})`);
   });
+  if (replay.lost) words.push(`${replay.lost} events found no room in the recording and are missing`);
   if (pointer) words.push(`pointer: ${short(pointer[0])}, ${short(pointer[1])} m`);
   values.textContent = words.join("\n");
 }
@@ -180,19 +110,28 @@ for (const [time, kind, ball, element, , , , , vx0, vy0, vx1, vy1] of replay.eve
   option.textContent = `${time.toFixed(4)}  ${replay.kinds[kind]}  ${named(element)}${speeds}`;
   list.append(option);
 }
+const keys = {
+  " ": () => play(!playing),
+  ",": () => toEvent(list.selectedIndex - 1),
+  ".": () => toEvent(list.selectedIndex + 1),
+  ArrowLeft: () => go(now - JUMP * Number(speed.value)),
+  ArrowRight: () => go(now + JUMP * Number(speed.value)),
+};
 slider.max = String(replay.end);
 slider.addEventListener("input", () => { play(false); go(Number(slider.value)); });
 list.addEventListener("input", () => toEvent(list.selectedIndex));
 find("play").addEventListener("click", () => play(!playing));
 find("back").addEventListener("click", () => toEvent(list.selectedIndex - 1));
 find("forth").addEventListener("click", () => toEvent(list.selectedIndex + 1));
-canvas.addEventListener("pointermove", (event) => {
-  const ratio = window.devicePixelRatio || 1;
-  pointer = [(event.offsetX * ratio) / view.scale + view.x, (canvas.height - event.offsetY * ratio) / view.scale + view.y];
-  tell();
+canvas.addEventListener("keydown", (event) => {
+  if (!keys[event.key]) return;
+  event.preventDefault();
+  keys[event.key]();
 });
+canvas.addEventListener("pointermove", (event) => { pointer = placeOf(view, canvas, event); tell(); });
 canvas.addEventListener("pointerleave", () => { pointer = null; tell(); });
 window.addEventListener("resize", resize);
-find("title").textContent = replay.about.id ? `${replay.about.id}, seed ${replay.about.seed}` : "World";
+const { id, seed } = replay.about;
+find("title").textContent = id ? `${id}${seed === null || seed === undefined ? "" : `, seed ${seed}`}` : "World";
 resize();
-go(0);
+go(Number(location.hash.slice(1)) || 0); // page.html#12.5 begins there

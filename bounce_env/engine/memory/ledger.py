@@ -87,7 +87,7 @@ def append_stop(
 def is_page_full(state: State, w: int, rows: int) -> bool:
     """Return whether the recording of world `w` lacks room for `rows` rows and a moment."""
     recording, head = state.recording, state.recording.head[0]
-    moments = recording.instants.shape[0]
+    moments = recording.moments.shape[0]
     return head.world == w and (
         head.rows + rows > recording.ledger.shape[0] or (moments > 0 and head.moments == moments)
     )
@@ -97,19 +97,21 @@ def is_page_full(state: State, w: int, rows: int) -> bool:
 def keep_moment(state: State, w: int) -> None:
     """Write from what state the balls and parts of world `w` go on now, where it is recorded with room for moments."""
     recording, head = state.recording, state.recording.head[0]
-    if head.world != w or recording.instants.shape[0] == 0:
+    if head.world != w or recording.moments.shape[0] == 0:
         return
-    if head.moments == recording.instants.shape[0]:
+    if head.moments == recording.moments.shape[0]:
         head.lost += 1
         return
     i, world = head.moments, state.worlds[w]
-    recording.instants[i, 0], recording.instants[i, 1] = world.time_hi, world.time_lo
+    moment = recording.moments[i]
+    moment.hi, moment.lo, moment.rows = world.time_hi, world.time_lo, head.rows
     for k in range(state.balls.shape[1]):
         recording.balls[i, k] = state.balls[w, k]
     _keep_slides(state, w, i)
     _keep_carried(state, w, i)
     _keep_parts(state, w, i)
     _keep_ends(state, w, i)
+    _keep_switches(state, w, i)
     head.moments += 1
 
 
@@ -135,6 +137,12 @@ def _keep_parts(state: State, w: int, i: int) -> None:
 def _keep_ends(state: State, w: int, i: int) -> None:
     for m in range(state.ends.shape[1]):
         state.recording.ends[i, m] = state.ends[w, m]
+
+
+@where("disabled")
+def _keep_switches(state: State, w: int, i: int) -> None:
+    for element in range(state.disabled.shape[1]):
+        state.recording.disabled[i, element] = state.disabled[w, element]
 
 
 @function

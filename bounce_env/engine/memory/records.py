@@ -171,6 +171,7 @@ RECORDING = record(
     world="i8",  # that is recorded, or NO_WORLD
     rows="i8", moments="i8", lost="i8",  # of the ledger and of the moments in use; how many found no room
 )  # fmt: skip
+MOMENT = record(hi="f8", lo="f8", rows="i8")  # an instant, as a sum of two floats [s]; rows of the ledger up to it
 NO_WORLD = -1
 
 # Surfaces that one ball can touch at one instant; more than these are not seen.

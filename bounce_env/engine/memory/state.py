@@ -21,6 +21,7 @@ from bounce_env.engine.memory.records import (
     ENDS,
     LEDGER,
     MEMBER,
+    MOMENT,
     MOTION,
     NO_WORLD,
     PAIR,
@@ -42,12 +43,13 @@ class Recording(NamedTuple):
 
     head: Array  # (1,) RECORDING
     ledger: Array  # (rows,) LEDGER
-    instants: Array  # (moments, 2) of each, as a sum of two floats [s]
+    moments: Array  # (moments,) MOMENT
     balls: Array  # (moments, balls)
     curve_slides: Table  # (moments, balls); None as in `State`, as those that follow
     carried: Table
     motions: Table  # (moments, parts)
     ends: Table
+    disabled: Table  # (moments, elements)
 
 
 class State(NamedTuple):
@@ -110,13 +112,17 @@ def copy_of_world(state: State, w: int) -> State:
     return with_recording(state._replace(**rows))
 
 
+def going_on(state: State) -> tuple[Table, ...]:
+    """Return those arrays of worlds of which a moment has copies."""
+    return state.balls, state.curve_slides, state.carried, state.motions, state.ends, state.disabled
+
+
 def with_recording(state: State, rows: int = 0, moments: int = 0) -> State:
     """Return the same state with room to record a world: so many rows of the ledger, and so many moments."""
-    moving = (state.balls, state.curve_slides, state.carried, state.motions, state.ends)
-    kept: list[Any] = [None if a is None else np.zeros((moments, *a.shape[1:]), a.dtype) for a in moving]
+    kept: list[Any] = [None if a is None else np.zeros((moments, *a.shape[1:]), a.dtype) for a in going_on(state)]
     head = np.zeros(1, RECORDING)
     head["world"] = NO_WORLD
-    return state._replace(recording=Recording(head, np.zeros(rows, LEDGER), np.zeros((moments, 2)), *kept))
+    return state._replace(recording=Recording(head, np.zeros(rows, LEDGER), np.zeros(moments, MOMENT), *kept))
 
 
 def taken(recording: Recording) -> Recording:

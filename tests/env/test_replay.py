@@ -1,0 +1,97 @@
+"""Environments that are recorded: the same bits, and replays that show where everything was."""
+
+import json
+from bisect import bisect_right
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+import bounce_env  # noqa: F401 (registers the games)
+
+pytestmark = pytest.mark.fast
+
+GAMES = ("Paddle", "Pinball", "Walls")
+
+
+def flight_at(paths, time):
+    """Where a ball is, of the document's paths that are flights; None on a curve."""
+    path = paths[max(bisect_right([p[0] for p in paths], time) - 1, 0)]
+    if len(path) == 4:
+        return None
+    begin, x, y, vx, vy, ax, ay = path
+    t = time - begin
+    return x + (vx + 0.5 * ax * t) * t, y + (vy + 0.5 * ay * t) * t
+
+
+@pytest.mark.parametrize("game", GAMES)
+def test_recording_changes_no_bit_and_the_replay_leads_through_every_step(game):
+    recorded = gym.make(f"Bounce/{game}-v0", record_events=True, disable_env_checker=True)
+    plain = gym.make(f"Bounce/{game}-v0", disable_env_checker=True)
+    plain.action_space.seed(3)
+    first = [env.reset(seed=4)[0].tobytes() for env in (recorded, plain)]
+    assert first[0] == first[1]
+    seen = []
+    for _ in range(40):
+        action = plain.action_space.sample()
+        one, other = recorded.step(action), plain.step(action)
+        assert one[0].tobytes() == other[0].tobytes()
+        assert one[1:4] == other[1:4]
+        batch = recorded.unwrapped._batch
+        seen.append((float(batch.episodes["frames"][0]) / 60.0, *batch.view(0)[0][0, :2]))
+        if one[2] or one[3]:
+            break
+    document = json.loads(recorded.unwrapped.replay().json)
+    assert document["format"] == 1
+    assert document["about"]["id"] == f"Bounce/{game}-v0"
+    assert document["about"]["seed"] == 4
+    assert document["end"] == seen[-1][0]
+    there = [(flight_at(document["balls"][0], time), (x, y)) for time, x, y in seen[:-1]]
+    assert sum(place is not None for place, _ in there) > len(there) // 2
+    for place, right in there:
+        if place is not None:
+            assert place == pytest.approx(right, abs=1e-10)
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+def test_one_world_of_many_is_recorded_over_its_resets(mode):
+    def played(world):
+        envs = gym.make_vec(
+            "Bounce/Paddle-v0", num_envs=3, vectorization_mode="vector_entry_point", autoreset_mode=mode, time_limit=0.5
+        )
+        envs.unwrapped.record(world)
+        envs.reset(seed=7)
+        out = []
+        for _ in range(40):
+            _, _, terminated, truncated, _ = envs.step(np.zeros(envs.action_space.shape, envs.action_space.dtype))
+            out.append(envs.unwrapped._batch.results.observations.tobytes())
+            if mode is AutoresetMode.DISABLED and (terminated | truncated).any():
+                envs.reset(options={"reset_mask": terminated | truncated})
+        return envs, out
+
+    envs, out = played(1)
+    assert out == played(None)[1]
+    last, present = (envs.unwrapped.replay(last=last).document for last in (True, False))
+    assert 0.4 < last["end"] <= 0.5 + 1e-9
+    assert 0.0 <= present["end"] <= 0.5 + 1e-9
+    for document in (last, present):
+        begins = [path[0] for path in document["balls"][0]]
+        assert begins == sorted(begins)
+        assert begins[-1] <= document["end"] + 1e-9
+
+
+def test_what_was_not_recorded_has_no_replay():
+    env = gym.make("Bounce/Paddle-v0", disable_env_checker=True).unwrapped
+    env.reset(seed=0)
+    with pytest.raises(RuntimeError, match="record_events=True"):
+        env.replay()
+    env.record()
+    with pytest.raises(RuntimeError, match="reset"):
+        env.replay()
+    env.reset()
+    env.step(env.action_space.sample())
+    page = env.replay().html
+    assert "<script" in page
+    with pytest.raises(ValueError, match="record_events = 1: must be True or False"):
+        gym.make("Bounce/Paddle-v0", record_events=1)

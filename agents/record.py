@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
+import gymnasium as gym
 import imageio_ffmpeg
 import numpy as np
 import numpy.typing as npt
@@ -23,16 +24,22 @@ GIF_COLOURS = 64
 GIF_STRIDE = 2  # every second frame at half the size: a GIF is for a page, the MP4 for looking closely
 
 
-def frames(task: Task, player: Player | LookAhead, seed: int) -> Iterator[Frame]:
-    """Return the frames of the first episode of `seed`, from its launch to its end."""
-    env = task.single(render_mode="rgb_array")
+def play(env: gym.Env[Any, Any], player: Player | LookAhead, seed: int) -> Iterator[None]:
+    """Play the first episode of `seed`; stops at its launch and after each step."""
     observation, _ = env.reset(seed=seed)
     ended = False
-    yield np.asarray(env.render())
+    yield
     while not ended:
         action: Any = act(player, observation[None], env.unwrapped.clone_state)[0]
         observation, _, terminated, truncated, _ = env.step(action)
         ended = terminated or truncated
+        yield
+
+
+def frames(task: Task, player: Player | LookAhead, seed: int) -> Iterator[Frame]:
+    """Return the frames of the first episode of `seed`, from its launch to its end."""
+    env = task.single(render_mode="rgb_array")
+    for _ in play(env, player, seed):
         yield np.asarray(env.render())
     env.close()
 
@@ -73,15 +80,29 @@ def write_gif(path: Path, pictures: list[Image.Image], fps: float) -> None:
 
 def record_episode(task: Task, player: Player | LookAhead, folder: Path, seed: int = HELD_OUT) -> list[Path]:
     """Write rollout.mp4 and rollout.gif of the first episode of `seed`, at the speed of play."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Refused(f"--output {folder}: cannot be made: {error.strerror}") from error
+    made_folder(folder)
     fps = task.single().metadata["render_fps"]
     mp4, gif = folder / "rollout.mp4", folder / "rollout.gif"
     pictures = write_mp4(mp4, frames(task, player, seed), fps)
     write_gif(gif, pictures, fps / GIF_STRIDE)
     return [mp4, gif]
+
+
+def record_replay(task: Task, player: Player | LookAhead, folder: Path, seed: int = HELD_OUT) -> Path:
+    """Write rollout.html, the replay of the first episode of `seed`."""
+    env = task.single(record_events=True)
+    for _ in play(env, player, seed):
+        pass
+    return env.unwrapped.replay().save(made_folder(folder) / "rollout.html")
+
+
+def made_folder(folder: Path) -> Path:
+    """Return the folder, which is there now; raises Refused where it cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Refused(f"--output {folder}: cannot be made: {error.strerror}") from error
+    return folder
 
 
 @dataclass(frozen=True)
@@ -94,6 +115,8 @@ class RecordOptions:
     """Of the episode; evaluation plays those from 10000 on."""
     sampled: bool = False
     """Let a trained agent sample its actions, instead of taking the best."""
+    html: bool = False
+    """Write rollout.html in place of the film: a page that plays the episode at any speed, from event to event."""
     output: Path | None = None
     """Folder to write into. Default: the run folder; runs/NAME for a baseline."""
     env_id: str | None = None
@@ -111,8 +134,12 @@ def record(options: RecordOptions) -> int:
     task, players = named(options.player, options.env_id, options.env_kwargs)
     player = list(players.values())[-1 if options.sampled else 0]
     default = Path(options.player) if Path(options.player).is_dir() else Path("runs") / options.player
-    for path in record_episode(task, player, options.output or default, options.seed):
-        say(str(path))
+    folder = options.output or default
+    if options.html:
+        say(str(record_replay(task, player, folder, options.seed)))
+    else:
+        for path in record_episode(task, player, folder, options.seed):
+            say(str(path))
     return 0
 
 

@@ -90,9 +90,9 @@ class Task:
         """What a player may do."""
         return self.single().action_space
 
-    def single(self, render_mode: str | None = None) -> gym.Env[Any, Any]:
-        """One environment."""
-        return gym.make(self.env_id, render_mode=render_mode, **self.env_kwargs)
+    def single(self, **more: Any) -> gym.Env[Any, Any]:
+        """One environment, with more keywords than the task's."""
+        return gym.make(self.env_id, **more, **self.env_kwargs)
 
     def batch(self, worlds: int) -> gym.vector.VectorEnv[Any, Any, Any]:
         """`worlds` environments; each is reset in the step after the end of its episode."""

@@ -12,6 +12,7 @@ from bounce_env.registration import register, register_all
 if TYPE_CHECKING:
     from bounce_env.engine import EventKind, Status, World, WorldBatch
     from bounce_env.envs import PaddleEnv, PinballEnv, WallsEnv
+    from bounce_env.replay import Replay, load_replay, replay_of
     from bounce_env.scene import (
         ALL_FEATURES,
         Arc,
@@ -50,6 +51,7 @@ _HOME = {
     **dict.fromkeys(_SCENE, "bounce_env.scene"),
     **dict.fromkeys(("EventKind", "Status", "World", "WorldBatch"), "bounce_env.engine"),
     **dict.fromkeys(("PaddleEnv", "PinballEnv", "WallsEnv"), "bounce_env.envs"),
+    **dict.fromkeys(("Replay", "load_replay", "replay_of"), "bounce_env.replay"),
     "load_agent": "bounce_env.trained",
 }
 
@@ -65,6 +67,7 @@ __all__ = [
     "Paddle",
     "PaddleEnv",
     "PinballEnv",
+    "Replay",
     "Scene",
     "SceneError",
     "Sensor",
@@ -76,8 +79,10 @@ __all__ = [
     "__version__",
     "builtin_scenes",
     "load_agent",
+    "load_replay",
     "load_scene",
     "register",
+    "replay_of",
 ]
 
 

@@ -192,6 +192,27 @@ class Watch:
 
 
 @dataclass(frozen=True)
+class Replay:
+    """Make a page of a replay that stands alone: of its document (.json), or anew of a page that an older version made.
+
+    Environments make them: gym.make(..., record_events=True), and after an episode env.unwrapped.replay().save(FILE).
+    """
+
+    file: Annotated[Path, tyro.conf.Positional]
+    """The .json or .html file."""
+    output: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
+    """The page to write. Default: beside the file, with the ending .html."""
+    show: bool = False
+    """Open it in a browser."""
+
+    def run(self) -> int:
+        """Write the page; returns the exit code."""
+        from bounce_env.commands.replay import write_page  # noqa: PLC0415
+
+        return write_page(self.file, self.output, show=self.show)
+
+
+@dataclass(frozen=True)
 class Report:
     """Measure errors, stability, what features cost, and speed, beside other engines: a page, CSV, JSON and PNG.
 
@@ -235,11 +256,12 @@ class Doctor:
         return diagnose()
 
 
-Command: TypeAlias = Scenes | Play | Watch | Report | Doctor
+Command: TypeAlias = Scenes | Play | Watch | Replay | Report | Doctor
 _Commands: TypeAlias = (
     Annotated[Watch, tyro.conf.subcommand("watch")]
     | Annotated[Play, tyro.conf.subcommand("play")]
     | Annotated[Scenes, tyro.conf.subcommand("scenes")]
+    | Annotated[Replay, tyro.conf.subcommand("replay")]
     | Annotated[Report, tyro.conf.subcommand("report")]
     | Annotated[Doctor, tyro.conf.subcommand("doctor")]
 )

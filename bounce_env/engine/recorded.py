@@ -59,7 +59,7 @@ class PartPath(NamedTuple):
 
 
 class Change(NamedTuple):
-    """At `time` [s] a field of an element becomes another: `disabled`, or `center` of a target that is put elsewhere."""
+    """At `time` [s] an element's field becomes another: `disabled`, or `center` of a target that is put elsewhere."""
 
     time: float
     element: int

@@ -65,8 +65,9 @@ class PaddleEnv(BounceEnv):
     (0.0, per 1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None,
     "rgb_array", "human"), `width`, `height` (of a rendered frame, pixels), `obs_width`, `obs_height` (of an observed
     one), `trail` (0.0; seconds of the ball's way, bounces included, that a frame shows, fading), `show_bounces` (False;
-    whether `render` shows, after a step with bounces, the last of them in place of the step's end). A vector env also
-    takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
+    whether `render` shows, after a step with bounces, the last of them in place of the step's end), `record_events`
+    (False; whether `replay` has what happens). A vector env also takes `num_envs`, `max_episode_steps`, `num_threads`
+    (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
 
     Versions: v0, first release.
     """

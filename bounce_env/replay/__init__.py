@@ -9,10 +9,11 @@ from typing import Any
 
 from bounce_env.engine.recorded import Recorded
 from bounce_env.files import replacing
-from bounce_env.replay.document import document_of, read_document, text_of
+from bounce_env.replay.document import document_of, text_of
+from bounce_env.replay.format import read_document, read_replay
 from bounce_env.replay.page import page_of
 
-__all__ = ["Replay", "read_document", "replay_of"]
+__all__ = ["Replay", "load_replay", "read_document", "replay_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,3 +53,8 @@ def replay_of(
     as `id`, `kwargs` and `seed` of an environment.
     """
     return Replay(document_of(run, about=about, score=score, lost=lost))
+
+
+def load_replay(path: str | os.PathLike[str]) -> Replay:
+    """Return the replay in a file, a page or a document alone; raises OSError, and ValueError for what is none."""
+    return Replay(read_replay(Path(path)))

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from bounce_env.engine.memory.records import EventKind
-from bounce_env.engine.recorded import BallPath, PartPath, Recorded
+from bounce_env.engine.recorded import BallPath, Change, PartPath, Recorded
 from bounce_env.extras import version
 from bounce_env.replay.chebyshev import pieces_of
+from bounce_env.replay.format import FORMAT
 from bounce_env.scene import dump_scene, scene_to_dict
-
-FORMAT = 1
 
 _SHARE = 1e-11
 """How far a series may be from the path that it stands for, as a share of the scene's size."""
@@ -43,12 +42,17 @@ def document_of(
             {"element": index, "paths": [_part(path) for path in paths]}
             for (index, _), paths in zip(run.scene.parts, run.parts, strict=True)
         ],
-        "changes": [[change.time, change.element, change.field, change.value] for change in run.changes],
+        "changes": [_change(change) for change in run.changes],
         "score": [[time, *_short([points])] for time, points in _new(score)],
         "lost": lost,
         "kinds": [kind.name.lower().replace("_", " ") for kind in EventKind],
         "events": [_event(row) for row in run.ledger],
     }
+
+
+def _change(change: Change) -> list[Any]:
+    value = change.value
+    return [change.time, change.element, change.field, [*value] if isinstance(value, tuple) else value]
 
 
 def _new(score: Iterable[tuple[float, float]]) -> Iterable[tuple[float, float]]:
@@ -95,15 +99,3 @@ def text_of(document: Mapping[str, Any]) -> str:
     """Return a document as JSON for the inside of a page: no text in it ends an element of HTML."""
     text = json.dumps(document, separators=(",", ":"), allow_nan=False)
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
-
-
-def read_document(text: str) -> dict[str, Any]:
-    """Return the document of a text; raises ValueError for what is none, or of another format."""
-    try:
-        document = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"replay: cannot be read as JSON: {error}") from error
-    found = document.get("format") if isinstance(document, dict) else None
-    if found != FORMAT:
-        raise ValueError(f"replay: format = {found!r}: must be {FORMAT}")
-    return document  # type: ignore[no-any-return]

@@ -9,6 +9,7 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 import bounce_env  # noqa: F401 (registers the games)
+from bounce_env.replay import read_document
 
 pytestmark = pytest.mark.fast
 
@@ -52,6 +53,34 @@ def test_recording_changes_no_bit_and_the_replay_leads_through_every_step(game):
     for place, right in there:
         if place is not None:
             assert place == pytest.approx(right, abs=1e-10)
+
+
+def test_a_replay_of_walls_leads_from_ball_to_ball_and_shows_no_serve_that_was_tried_out():
+    env = gym.make("Bounce/Walls-v0", record_events=True, disable_env_checker=True, balls=3, frame_skip=6).unwrapped
+    env.reset(seed=11)
+    env.action_space.seed(0)
+    seen, targets, over = [], [], False
+    while not over:
+        *_, terminated, truncated, _ = env.step(env.action_space.sample())
+        over = terminated or truncated
+        batch = env._batch
+        seen.append((float(batch.episodes["frames"][0]) / 60.0, *batch.view(0)[0][0, :2]))
+        targets.append(batch.target_places(0)[0].tolist())
+    document = env.replay().document
+    assert read_document(env.replay().json) == document
+    assert [value for *_, value in document["changes"]] == [list(t) for t in dict.fromkeys(map(tuple, targets))][1:]
+    begins = [path[0] for path in document["balls"][0]]
+    assert begins == sorted(begins)
+    assert document["lost"] == 0
+    serves = {time for time, *_ in document["changes"]}
+    assert len(serves) == 2
+    there = [(flight_at(document["balls"][0], time), (x, y)) for time, x, y in seen[:-1]]
+    for place, right in there:
+        assert place == pytest.approx(right, abs=1e-9)
+    times = [event[0] for event in document["events"]]
+    assert times == sorted(times)
+    last = env._batch.recorder.present
+    assert sum(len(page.ledger) for stretch in last.stretches for page in stretch.pages) == len(times)
 
 
 @pytest.mark.parametrize("mode", list(AutoresetMode))

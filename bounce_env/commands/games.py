@@ -7,7 +7,7 @@ from typing import Any
 import gymnasium as gym
 
 from bounce_env.commands.cli import Refused, check_range
-from bounce_env.lab.film import Film
+from bounce_env.window.film import Film
 from bounce_env.registration import ENTRIES
 from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.render.window import display_problem

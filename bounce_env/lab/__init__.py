@@ -1,1 +1,1 @@
-"""What a person does with a game in a window."""
+"""The lab: what the engine does, in a browser, to try out by hand."""

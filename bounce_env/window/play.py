@@ -4,8 +4,8 @@ from typing import Any
 
 import gymnasium as gym
 
-from bounce_env.lab.screen import Screen
-from bounce_env.lab.session import Session
+from bounce_env.window.screen import Screen
+from bounce_env.window.session import Session
 from bounce_env.render import Window
 from bounce_env.render.lazy_pygame import load_pygame
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.lab.session import Session
+from bounce_env.window.session import Session
 from bounce_env.render.lazy_pygame import load_pygame
 
 if TYPE_CHECKING:

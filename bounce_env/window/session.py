@@ -7,8 +7,8 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.lab.film import Film
-from bounce_env.lab.keys import FILM, PAUSE, QUIT, RESTART, Controls, controls_for
+from bounce_env.window.film import Film
+from bounce_env.window.keys import FILM, PAUSE, QUIT, RESTART, Controls, controls_for
 
 Frame = npt.NDArray[np.uint8]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gymnasium import spaces
 
-from bounce_env.lab.keys import controls_for
+from bounce_env.window.keys import controls_for
 
 ONE = spaces.Box(-1.0, 1.0, (1,), np.float32)
 TWO = spaces.Box(np.array([-2.0, -3.0]), np.array([4.0, 5.0]), dtype=np.float64)

@@ -5,10 +5,10 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 
-from bounce_env.lab.film import Film
-from bounce_env.lab.play import play
-from bounce_env.lab.screen import Screen
-from bounce_env.lab.session import Session
+from bounce_env.window.film import Film
+from bounce_env.window.play import play
+from bounce_env.window.screen import Screen
+from bounce_env.window.session import Session
 
 HEIGHT = 160
 

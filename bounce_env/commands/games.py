@@ -7,10 +7,10 @@ from typing import Any
 import gymnasium as gym
 
 from bounce_env.commands.cli import Refused, check_range
-from bounce_env.window.film import Film
 from bounce_env.registration import ENTRIES
 from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.render.window import display_problem
+from bounce_env.window.film import Film
 from bounce_env.wording import nearest
 
 HEIGHT = 720

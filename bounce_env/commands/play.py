@@ -8,11 +8,11 @@ from bounce_env.commands import games
 from bounce_env.commands.cli import FINE, Refused, check_range, say
 from bounce_env.commands.options import Play
 from bounce_env.commands.scenes import check_named
+from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.window.film import Film
 from bounce_env.window.keys import controls_for
 from bounce_env.window.play import play, prepare
 from bounce_env.window.session import Session
-from bounce_env.render.lazy_pygame import load_pygame
 
 NO_KEYWORDS = ("game", "seed", "films", "frames")
 """The options that are not the environment's keywords."""

@@ -9,11 +9,11 @@ import numpy as np
 from bounce_env.commands import games
 from bounce_env.commands.cli import FINE, Refused, check_range, say
 from bounce_env.commands.options import Watch
+from bounce_env.render.lazy_pygame import load_pygame
+from bounce_env.trained import Agent, load_agent
 from bounce_env.window.film import Film
 from bounce_env.window.play import play, prepare
 from bounce_env.window.session import Session
-from bounce_env.render.lazy_pygame import load_pygame
-from bounce_env.trained import Agent, load_agent
 from bounce_env.wording import counted
 
 

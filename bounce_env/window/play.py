@@ -4,10 +4,10 @@ from typing import Any
 
 import gymnasium as gym
 
-from bounce_env.window.screen import Screen
-from bounce_env.window.session import Session
 from bounce_env.render import Window
 from bounce_env.render.lazy_pygame import load_pygame
+from bounce_env.window.screen import Screen
+from bounce_env.window.session import Session
 
 
 def play(

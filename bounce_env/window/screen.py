@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from bounce_env.window.session import Session
 from bounce_env.render.lazy_pygame import load_pygame
+from bounce_env.window.session import Session
 
 if TYPE_CHECKING:
     import pygame

@@ -32,6 +32,8 @@ lint: $(VENV)/dev
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	@if command -v npx > /dev/null; then npx --yes oxlint@1.94.0 --deny-warnings bounce_env/lab/pages bounce_env/replay; \
+	else echo 'no npx: the pages are not linted'; fi
 
 $(VENV)/train $(VENV)/dev $(VENV)/dist: pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)

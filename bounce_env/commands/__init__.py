@@ -11,6 +11,7 @@ from bounce_env.extras import missing, version
 EXTRAS = {
     **dict.fromkeys(("tyro", "tqdm", "imageio_ffmpeg"), "cli"),
     **dict.fromkeys(("mpmath", "matplotlib", "jinja2"), "report"),
+    **dict.fromkeys(("starlette", "uvicorn", "websockets"), "lab"),
 }
 """Modules that commands cannot do without, and the extra that has each."""
 
@@ -33,6 +34,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         return read(words).run()
     except ModuleNotFoundError as error:
+        if error.name == "playwright":
+            return complain("--benchmark needs Playwright: python -m pip install playwright")
         if error.name not in EXTRAS:
             raise
         return complain(str(missing(EXTRAS[error.name], error.name, "the commands need")))

@@ -192,6 +192,42 @@ class Watch:
 
 
 @dataclass(frozen=True)
+class Lab:
+    """Try the engine out by hand, in a browser: a server on this machine, and a page.
+
+    reflection: the tutorial's bounce, number by number. stage: a ball among walls that are dragged while it runs.
+
+    On a machine without a screen, forward the port, ssh -L 8765:localhost:8765 MACHINE, and open the address that is
+    printed there.
+    """
+
+    room: Annotated[Literal["reflection", "stage"] | None, tyro.conf.Positional] = None
+    """What to open. Default: a page from which to choose."""
+    scene: Annotated[str | None, tyro.conf.Positional] = None
+    """Of the stage: path of a .toml file, or name of a built-in scene. Default: the tutorial's."""
+    folder: Path = field(default_factory=Path)
+    """Where scenes are read and saved."""
+    host: str = "127.0.0.1"
+    """Where to listen: other machines reach only another one than this."""
+    port: int = 8765
+    """Where to listen; 0: a free one."""
+    open: bool = True
+    """Open a browser."""
+    benchmark: bool = False
+    """Measure the stage in a browser without a window instead: needs Playwright and Chromium."""
+
+    def run(self) -> int:
+        """Serve until Ctrl-C, or measure; returns the exit code."""
+        if self.benchmark:
+            from bounce_env.commands.lab import run_benchmark  # noqa: PLC0415
+
+            return run_benchmark()
+        from bounce_env.commands.lab import run_lab  # noqa: PLC0415
+
+        return run_lab(self.room, self.scene, folder=self.folder, host=self.host, port=self.port, show=self.open)
+
+
+@dataclass(frozen=True)
 class Replay:
     """Make a page of a replay that stands alone: of its document (.json), or anew of a page that an older version made.
 
@@ -256,11 +292,12 @@ class Doctor:
         return diagnose()
 
 
-Command: TypeAlias = Scenes | Play | Watch | Replay | Report | Doctor
+Command: TypeAlias = Scenes | Play | Watch | Lab | Replay | Report | Doctor
 _Commands: TypeAlias = (
     Annotated[Watch, tyro.conf.subcommand("watch")]
     | Annotated[Play, tyro.conf.subcommand("play")]
     | Annotated[Scenes, tyro.conf.subcommand("scenes")]
+    | Annotated[Lab, tyro.conf.subcommand("lab")]
     | Annotated[Replay, tyro.conf.subcommand("replay")]
     | Annotated[Report, tyro.conf.subcommand("report")]
     | Annotated[Doctor, tyro.conf.subcommand("doctor")]

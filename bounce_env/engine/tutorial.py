@@ -40,7 +40,19 @@ from typing import NamedTuple
 
 from bounce_env.scene import Ball, Scene, Wall
 
-__all__ = ["MAX_BOUNCES", "ROUNDING", "State", "Vector", "bounce", "run", "start", "step"]
+__all__ = [
+    "MAX_BOUNCES",
+    "ROUNDING",
+    "Reflection",
+    "State",
+    "Vector",
+    "bounce",
+    "meeting",
+    "reflect",
+    "run",
+    "start",
+    "step",
+]
 
 Pair = tuple[float, float]
 
@@ -101,8 +113,26 @@ class State(NamedTuple):
     """For each wall the side of its line: +1 where its normal (lx, ly) points, -1 the other."""
 
 
+class Reflection(NamedTuple):
+    """A bounce with all that leads to it, by the tutorial's names: lengths in metres."""
+
+    dp1: float
+    proj1: Pair
+    """Of the movement on the wall."""
+    dp2: float
+    proj2: Pair
+    """On the wall's normal, before it is reversed."""
+    movement: Pair
+    """After the bounce."""
+
+
 def bounce(v1: Vector, v2: Vector) -> Pair:
-    """Return the movement vector `v1` after its bounce off the wall `v2` [m].
+    """Return the movement vector `v1` after its bounce off the wall `v2` [m]."""
+    return reflect(v1, v2).movement
+
+
+def reflect(v1: Vector, v2: Vector) -> Reflection:
+    """Return the bounce of the movement vector `v1` off the wall `v2`.
 
     Source: the tutorial's "Bounce" and "Real bounce and friction", with unit vectors in both places.
     """
@@ -112,12 +142,30 @@ def bounce(v1: Vector, v2: Vector) -> Pair:
     dp2 = v1.vx * (v2.lx / v2.len) + v1.vy * (v2.ly / v2.len)
     proj2 = (dp2 * (v2.lx / v2.len), dp2 * (v2.ly / v2.len))
 
-    proj2 = (-proj2[0], -proj2[1])
+    reversed2 = (-proj2[0], -proj2[1])
 
-    return (
-        v1.f * v2.f * proj1[0] + v1.b * v2.b * proj2[0],
-        v1.f * v2.f * proj1[1] + v1.b * v2.b * proj2[1],
+    movement = (
+        v1.f * v2.f * proj1[0] + v1.b * v2.b * reversed2[0],
+        v1.f * v2.f * proj1[1] + v1.b * v2.b * reversed2[1],
     )
+    return Reflection(dp1, proj1, dp2, proj2, movement)
+
+
+def meeting(v1: Vector, v2: Vector, radius: float) -> float | None:
+    """Return the share of `v1` after which a disc of `radius` [m], at first at `v1.p0`, meets the wall `v2`.
+
+    None where it does not: it moves away or along, is too short, or passes the wall's ends. Only the wall's two
+    sides are looked at; its ends are points that the tutorial does not bounce from.
+    """
+    distance = _tutorial_distance(v2, v1.p0)
+    side = 1 if distance >= 0 else -1
+    towards = -side * (v1.vx * v2.lx + v1.vy * v2.ly) / v2.len
+    if towards <= ROUNDING * v1.len:
+        return None
+    share = (side * distance - radius) / towards
+    x, y = v1.p0[0] + share * v1.vx, v1.p0[1] + share * v1.vy
+    along = (x - v2.p0[0]) * v2.dx + (y - v2.p0[1]) * v2.dy
+    return share if 0 <= share <= 1 and 0 <= along <= v2.len else None
 
 
 def start(scene: Scene, position: Pair, velocity: Pair) -> State:

@@ -214,9 +214,9 @@ class World:
         dvx, dvy = pushed(change).tolist()
         world_push_balls(self._bound, dvx, dvy)
 
-    def replace(self, scene: Scene) -> None:
+    def replace(self, scene: Scene, *, position: npt.ArrayLike | None = None) -> None:
         """Go on in another scene: time, balls and their velocities stay; a part of the same name and kind keeps its
-        place and command.
+        place and command. position: where balls in play are from now on, (balls, 2), metres; None: where they are.
 
         The place is the distance or angle from its first stop, as far as the new way reaches; a draggable wall keeps
         its ends where its `start`, `end` and `offset_radius` are as before. All elements are on.
@@ -236,6 +236,8 @@ class World:
         balls, cores = self._now()[0], np.empty((len(scene.parts), 4))
         bound = bind(state)
         view(bound, 0, np.empty((0, 4)), cores)
+        if position is not None:
+            balls[:, :2] = self._rows("position", position)
         for k, (x, y, vx, vy) in enumerate(balls.tolist()):
             if self._state.balls[0, k].status != OUT:
                 x, y = place_clear(scene, _cores_by_index(scene, cores), x, y)  # noqa: PLW2901

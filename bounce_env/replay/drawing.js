@@ -51,7 +51,8 @@ export function line(target, [x0, y0], [x1, y1]) {
 export function disc(target, [x, y], radius, fill) {
   target.beginPath();
   target.arc(x, y, radius, 0, 2 * Math.PI);
-  fill ? target.fill() : target.stroke();
+  if (fill) target.fill();
+  else target.stroke();
 }
 
 function colourOf(element) {

@@ -6,9 +6,10 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from bounce_env.engine import WorldBatch
 from bounce_env.engine.placement import part_cores_at_start, place_clear
 from bounce_env.report.model import FeatureCostRow, FeatureRow
 from bounce_env.scene import Ball, Feature, Scene, load_scene
-from bounce_env.scene.features import ALL_FOR_ONE_BALL
+from bounce_env.scene.features import ALL_FOR_ONE_BALL, checked_features
 
 BASE = "elastic_box"
 """The built-in scene with fewest features, on which each other one is forced."""
@@ -29,6 +30,10 @@ CALM_STEPS = 400
 """So many make a piece of milliseconds."""
 
 
+KernelSets: TypeAlias = frozenset[frozenset[Feature]]
+"""Each a set of features, for which there is a kernel."""
+
+
 class Kernel(NamedTuple):
     """What a scene costs on a kernel: ns of a calm step and of a bounce, seconds of compiling, bytes of its code."""
 
@@ -38,9 +43,20 @@ class Kernel(NamedTuple):
     size: int | None
 
 
-def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
-    """Measure a built-in scene. pieces: how many are timed, of which the least counts. compiled: compiles it afresh."""
-    lean, general = _kernels(name, [frozenset(), ALL_FOR_ONE_BALL], pieces, compiled=compiled)
+def kernel_sets(names: Iterable[str], costs: Iterable[Feature]) -> KernelSets:
+    """Return the sets of features for which the rows of these scenes, and of what these features cost, need kernels."""
+    scenes = [(load_scene(name), forced) for name in names for forced in (frozenset(), ALL_FOR_ONE_BALL)]
+    base = load_scene(BASE)
+    return frozenset(_set_of(scene, forced) for scene, forced in [*scenes, *((base, {feature}) for feature in costs)])
+
+
+def measure_features(name: str, *, pieces: int, compiled: KernelSets) -> FeatureRow:
+    """Measure a built-in scene.
+
+    pieces: how many are timed, of which the least counts. compiled: the kernels of the whole run, which are compiled
+    afresh before the first of them is timed; none: this scene's are timed without.
+    """
+    lean, general = _kernels(name, [frozenset(), ALL_FOR_ONE_BALL], pieces, compiled)
     has = load_scene(name).features
     return FeatureRow(
         scene=name,
@@ -57,9 +73,9 @@ def measure_features(name: str, *, pieces: int, compiled: bool) -> FeatureRow:
     )
 
 
-def measure_cost(feature: Feature, *, pieces: int) -> FeatureCostRow:
-    """Measure what a feature costs a scene that does not need it, forced on."""
-    lean, forced = _kernels(BASE, [frozenset(), frozenset({feature})], pieces, compiled=True)
+def measure_cost(feature: Feature, *, pieces: int, compiled: KernelSets) -> FeatureCostRow:
+    """Measure what a feature costs a scene that does not need it, forced on. compiled: as of `measure_features`."""
+    lean, forced = _kernels(BASE, [frozenset(), frozenset({feature})], pieces, compiled)
     assert lean.bounce is not None
     assert forced.bounce is not None
     assert lean.seconds is not None
@@ -80,12 +96,13 @@ def measure_cost(feature: Feature, *, pieces: int) -> FeatureCostRow:
     )
 
 
-def _kernels(name: str, forced: Sequence[frozenset[Feature]], pieces: int, *, compiled: bool) -> list[Kernel]:
+def _kernels(name: str, forced: Sequence[frozenset[Feature]], pieces: int, compiled: KernelSets) -> list[Kernel]:
     """Measure a built-in scene with sets of features forced on, in turns; compiled: in processes of their own."""
+    scene = load_scene(name)
     if not compiled:
-        return [Kernel(step, bounce, None, None) for step, bounce in _costs(load_scene(name), forced, pieces)]
-    has = load_scene(name).features
-    sizes = [_compiling(has | features) for features in forced]
+        return [Kernel(step, bounce, None, None) for step, bounce in _costs(scene, forced, pieces)]
+    known = _compiled(compiled)
+    sizes = [known[_set_of(scene, features)] for features in forced]
     costs = _alone("costs", name, str(pieces), *(",".join(sorted(features)) for features in forced))
     return [Kernel(step, bounce, *size) for (step, bounce), size in zip(costs, sizes, strict=True)]
 
@@ -141,7 +158,18 @@ def _starts(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     return np.array(places), rng.normal(size=(WORLDS, 2)) * 2.0
 
 
+def _set_of(scene: Scene, forced: Collection[Feature]) -> frozenset[Feature]:
+    """Return the features of the scene's kernel with some forced on, and what these bring with them."""
+    return scene.features | checked_features(forced)
+
+
 @cache
+def _compiled(sets: KernelSets) -> Mapping[frozenset[Feature], tuple[float, int]]:
+    """Compile the kernels, two at a time: nothing else is timed meanwhile, and what counts is the time of the CPU."""
+    with ThreadPoolExecutor(2) as pool:
+        return dict(zip(sets, pool.map(_compiling, sets), strict=True))
+
+
 def _compiling(features: frozenset[Feature]) -> tuple[float, int]:
     """Compile the kernel in a process of its own; returns seconds of CPU and bytes of machine code."""
     seconds, size = _alone("compiling", *sorted(features))

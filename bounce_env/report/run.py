@@ -16,7 +16,7 @@ from bounce_env.extras import version
 from bounce_env.files import hash_of_files, replacing
 from bounce_env.machine import processor
 from bounce_env.report.errors import Plan, jobs
-from bounce_env.report.features import BASE, measure_cost, measure_features
+from bounce_env.report.features import BASE, kernel_sets, measure_cost, measure_features
 from bounce_env.report.methods import all_methods
 from bounce_env.report.methods.base import Method
 from bounce_env.report.model import Report, Row, from_json, part_of, to_json
@@ -95,16 +95,22 @@ def _stability_jobs(options: Options) -> list[Job]:
 
 
 def _feature_jobs(options: Options) -> list[Job]:
-    names = QUICK_FEATURES if options.quick else builtin_scenes()
+    if options.methods:
+        return []
+    names = [
+        name
+        for name in (QUICK_FEATURES if options.quick else builtin_scenes())
+        if not options.scenes or name in options.scenes
+    ]
+    costs = [] if options.quick or options.scenes else sorted(ALL_FEATURES - load_scene(BASE).features)
+    compiled = frozenset() if options.quick else kernel_sets(names, costs)
     pieces = 20 if options.quick else 100
     return [
-        Job("features", f"features {name}", partial(measure_features, name, pieces=pieces, compiled=not options.quick))
+        Job("features", f"features {name}", partial(measure_features, name, pieces=pieces, compiled=compiled))
         for name in names
-        if not options.methods and (not options.scenes or name in options.scenes)
     ] + [
-        Job("features", f"cost of {feature}", partial(measure_cost, feature, pieces=pieces))
-        for feature in sorted(ALL_FEATURES - load_scene(BASE).features)
-        if not (options.quick or options.methods or options.scenes)  # each has a kernel of its own to be compiled
+        Job("features", f"cost of {feature}", partial(measure_cost, feature, pieces=pieces, compiled=compiled))
+        for feature in costs
     ]
 
 

@@ -1,0 +1,39 @@
+"""The scenes in the folder with which the lab was started: there it reads and writes, and nowhere else."""
+
+from pathlib import Path
+
+from bounce_env.files import replacing
+from bounce_env.scene import Scene, dump_scene, load_scene
+
+
+class Shelf:
+    """Scenes by name: FOLDER/NAME.toml. Names are checked before they come here: letters, digits, _ and -."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def names(self) -> list[str]:
+        """Return what is there, sorted."""
+        return sorted(path.stem for path in self.folder.glob("*.toml"))
+
+    def load(self, name: str) -> Scene:
+        """Return a scene; raises SceneError, a ValueError, where there is none or it is wrong."""
+        return load_scene(self._path(name))
+
+    def save(self, name: str, scene: Scene, *, overwrite: bool) -> Path:
+        """Write a scene whole; raises ValueError where one of that name is there, unless it may be overwritten."""
+        path = self._path(name)
+        if path.exists() and not overwrite:
+            raise ValueError(f"{path.name} is there already: save it under another name, or overwrite it")
+        try:
+            with replacing(path) as unfinished:
+                unfinished.write_text(dump_scene(scene), encoding="utf-8")
+        except OSError as error:
+            raise ValueError(f"{path.name}: cannot be written: {error.strerror}") from error
+        return path
+
+    def _path(self, name: str) -> Path:
+        path = self.folder / f"{name}.toml"
+        if path.is_symlink():
+            raise ValueError(f"{path.name}: is a link, which may lead out of the folder")
+        return path

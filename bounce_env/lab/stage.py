@@ -243,6 +243,7 @@ class Stage:
         before = self.table.scene
         notice = change(self.table)
         self.table.remember(before)
+        self._ghost_anew()
         return {"notice": notice} if notice else {}
 
     def _view(self) -> dict[str, Any]:

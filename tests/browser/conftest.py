@@ -1,0 +1,49 @@
+"""A real browser, driven by real mouse, touch and key events, and a lab that serves it."""
+
+import shutil
+from contextlib import contextmanager
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+from tests.conftest import require
+from tests.lab.serving import serving
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"]
+WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 400, "height": 800}
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Chromium or Chrome, of the machine."""
+    path = next(filter(None, map(shutil.which, BROWSERS)), None)
+    require("browser", path is not None, "Chromium or Chrome on the path")
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
+        yield running
+        running.close()
+
+
+@contextmanager
+def page_of(browser, **context):
+    """Give a page; a message on its console, an error in it or a request to elsewhere fails the test."""
+    opened = browser.new_context(**{"viewport": WIDE, **context})
+    page, complaints = opened.new_page(), []
+    page.set_default_timeout(20_000)
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("requestfailed", lambda request: complaints.append(f"{request.url}: {request.failure}"))
+    page.on("dialog", lambda dialog: complaints.append(dialog.message))
+    yield page
+    assert complaints == []
+    opened.close()
+
+
+@pytest.fixture(scope="module")
+def lab(browser, tmp_path_factory):
+    """A lab, with a folder of its own."""
+    folder = tmp_path_factory.mktemp("scenes")
+    with serving(folder) as server:
+        server.folder = folder
+        yield server

@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
-.PHONY: train test check results soak dist lint clean
+.PHONY: train test check results soak browser pictures dist lint clean
 
 train: $(VENV)/train
 	$(BIN)/python -m agents.train
@@ -22,6 +22,14 @@ test: lint
 # The same tests with full counts: hours, not minutes.
 soak: $(VENV)/dev
 	BOUNCE_SOAK=1 $(BIN)/python -m pytest -rP -n 2 --dist loadfile
+
+# The pages in a real browser, which make test does as well: Chromium or Chrome must be on the path.
+browser: $(VENV)/dev
+	BOUNCE_REQUIRE=browser $(BIN)/python -m pytest tests/browser
+
+# The pictures of the lab in README and docs, of what the pages show now.
+pictures: $(VENV)/dev
+	$(BIN)/python -m tests.browser.pictures
 
 # Wheel and sdist, tried out in a fresh environment of each Python that is there.
 dist: $(VENV)/dist

@@ -1,6 +1,6 @@
 """Build wheel and sdist, check them, and try the wheel in a fresh environment of each Python on this machine.
 
-What is tried: the package alone, then with the extras render and cli; sb3 where the PyTorch of constraints.txt can be
+What is tried: the package alone, then with the extras render, cli and lab; sb3 where the PyTorch of constraints.txt can be
 installed, which on a machine without PyTorch's own index is Python 3.11. Exits with 1 where anything fails.
 """
 
@@ -38,6 +38,12 @@ import bounce_env
 env = gym.make("Bounce/Paddle-v0", render_mode="rgb_array")
 env.reset(seed=0)
 assert env.render().shape[2] == 3
+"""
+LAB = """
+from bounce_env.lab.server import FILES
+from bounce_env.replay.page import page_of
+assert FILES and all(file.is_file() for file in FILES.values()), FILES
+assert "<canvas" in page_of({})
 """
 SB3 = """
 import numpy as np
@@ -109,6 +115,8 @@ def try_on(wheel: Path, python: str, version: tuple[int, int], folder: Path) -> 
     install(own, f"{wheel}[cli]")
     run(str(scripts / "bounce-env"), "scenes", "list", cwd=folder)
     run(str(scripts / "bounce-env"), "scenes", "draw", "pinball", cwd=folder)
+    install(own, f"{wheel}[lab]")
+    run(own, "-W", "error", "-c", LAB, cwd=folder)
     if version == WITH_SB3:
         install(own, f"{wheel}[sb3]")
         run(own, "-W", "error", "-c", SB3, cwd=folder)

@@ -72,7 +72,7 @@ def test_readme_has_every_extra_that_users_need():
 
 DOCUMENTS = [
     "README.md", "CONTRIBUTING.md", "SECURITY.md", "docs/architecture.md", "docs/glossary.md", "docs/info.md",
-    "docs/report.md", "docs/replay.md",
+    "docs/report.md", "docs/replay.md", "docs/lab.md",
     "docs/physics.md", "docs/releasing.md",
 ]  # fmt: skip
 SOURCES = sorted(path for folder in ("bounce_env", "agents", "tests", ".ci") for path in (ROOT / folder).rglob("*.py"))

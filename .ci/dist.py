@@ -1,7 +1,7 @@
 """Build wheel and sdist, check them, and try the wheel in a fresh environment of each Python on this machine.
 
-What is tried: the package alone, then with the extras render, cli and lab; sb3 where the PyTorch of constraints.txt can be
-installed, which on a machine without PyTorch's own index is Python 3.11. Exits with 1 where anything fails.
+What is tried: the package alone, then with the extras render, cli and lab; sb3 where the PyTorch of constraints.txt
+can be installed, which on a machine without PyTorch's own index is Python 3.11. Exits with 1 where anything fails.
 """
 
 import os

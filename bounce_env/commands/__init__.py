@@ -11,7 +11,7 @@ from bounce_env.extras import missing, version
 EXTRAS = {
     **dict.fromkeys(("tyro", "tqdm", "imageio_ffmpeg"), "cli"),
     **dict.fromkeys(("mpmath", "matplotlib", "jinja2"), "report"),
-    **dict.fromkeys(("starlette", "uvicorn", "websockets"), "lab"),
+    **dict.fromkeys(("starlette", "uvicorn", "websockets", "platformdirs"), "lab"),
 }
 """Modules that commands cannot do without, and the extra that has each."""
 

@@ -196,12 +196,13 @@ class Lab:
     """Try the engine out by hand, in a browser: a server on this machine, and a page.
 
     reflection: the tutorial's bounce, number by number. stage: a ball among walls that are dragged while it runs.
+    play: the games, by keys, mouse or fingers.
 
     On a machine without a screen, forward the port, ssh -L 8765:localhost:8765 MACHINE, and open the address that is
     printed there.
     """
 
-    room: Annotated[Literal["reflection", "stage"] | None, tyro.conf.Positional] = None
+    room: Annotated[Literal["reflection", "stage", "play"] | None, tyro.conf.Positional] = None
     """What to open. Default: a page from which to choose."""
     scene: Annotated[str | None, tyro.conf.Positional] = None
     """Of the stage: path of a .toml file, or name of a built-in scene. Default: the tutorial's."""

@@ -1,7 +1,7 @@
 """The tutorial's first example: a movement vector and a wall, and the movement after the bounce, number by number."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -9,7 +9,7 @@ from pydantic import TypeAdapter
 
 from bounce_env.engine.tutorial import Pair, Vector, meeting, reflect
 from bounce_env.lab.messages import Message, Point, Share, ZeroOrMore, read
-from bounce_env.scene import Scene
+from bounce_env.lab.ready import Ready
 
 
 class Reflect(Message):
@@ -31,7 +31,7 @@ _MESSAGES: TypeAdapter[Reflect] = TypeAdapter(Reflect)
 class Reflection:
     """Answers with every number of the tutorial's formulas, as `engine.tutorial` computes them."""
 
-    def __init__(self, *, folder: Path, scene: str | None, ready: Callable[[Scene], None]) -> None:
+    def __init__(self, *, folder: Path, scene: str | None, ready: Ready) -> None:
         del folder, scene, ready  # of other rooms
 
     def answer(self, text: str) -> Mapping[str, Any]:

@@ -18,8 +18,8 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from bounce_env.lab.guard import HEADERS, LOCAL, Guard
+from bounce_env.lab.ready import Ready, at_once
 from bounce_env.lab.rooms import ROOMS, Room
-from bounce_env.scene import Scene
 
 MOST_SESSIONS = 8
 LARGEST_MESSAGE = 1_000_000  # bytes
@@ -43,7 +43,7 @@ class Server:
     """Serves the lab.
 
     folder: the only one in which it reads and writes files. scene: of the stage at first. host, port: where it listens;
-    port 0: a free one. ready: returns when the kernels of a scene are there. Raises OSError where it cannot listen.
+    port 0: a free one. ready: returns when kernels are there. Raises OSError where it cannot listen.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class Server:
         scene: str | None = None,
         host: str = "127.0.0.1",
         port: int = 0,
-        ready: Callable[[Scene], None] = lambda scene: None,
+        ready: Ready = at_once,
     ) -> None:
         self._given: dict[str, Any] = {"folder": folder, "scene": scene, "ready": ready}
         self._sessions = 0

@@ -18,11 +18,11 @@ class Shelf:
 
     def load(self, name: str) -> Scene:
         """Return a scene; raises SceneError, a ValueError, where there is none or it is wrong."""
-        return load_scene(self._path(name))
+        return load_scene(self.path(name))
 
     def save(self, name: str, scene: Scene, *, overwrite: bool) -> Path:
         """Write a scene whole; raises ValueError where one of that name is there, unless it may be overwritten."""
-        path = self._path(name)
+        path = self.path(name)
         if path.exists() and not overwrite:
             raise ValueError(f"{path.name} is there already: save it under another name, or overwrite it")
         try:
@@ -32,7 +32,8 @@ class Shelf:
             raise ValueError(f"{path.name}: cannot be written: {error.strerror}") from error
         return path
 
-    def _path(self, name: str) -> Path:
+    def path(self, name: str) -> Path:
+        """Return where a scene is, or would be; raises ValueError for a link."""
         path = self.folder / f"{name}.toml"
         if path.is_symlink():
             raise ValueError(f"{path.name}: is a link, which may lead out of the folder")

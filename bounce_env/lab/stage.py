@@ -1,6 +1,6 @@
 """The tutorial's second example: a ball among many walls, whose ends are dragged while it runs."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import singledispatchmethod
 from pathlib import Path
 from typing import Any, Literal
@@ -10,9 +10,10 @@ from pydantic import JsonValue
 from bounce_env.lab.ghost import Ghost
 from bounce_env.lab.messages import FileName, Index, Message, Point, Seconds, read, reader
 from bounce_env.lab.needs import line_to_copy, needs_of
+from bounce_env.lab.ready import Ready, at_once
 from bounce_env.lab.shelf import Shelf
 from bounce_env.lab.table import Table, event_of
-from bounce_env.scene import Scene, builtin_scenes, load_scene, scene_to_dict
+from bounce_env.scene import builtin_scenes, load_scene, scene_to_dict
 
 DEFAULT = "tutorial"
 MOST_EVENTS_SHOWN = 50  # of one frame
@@ -133,7 +134,7 @@ _MESSAGES = reader(
 class Stage:
     """A table in a tab. ready: see `Table`."""
 
-    def __init__(self, *, folder: Path, scene: str | None, ready: Callable[[Scene], None] = lambda scene: None) -> None:
+    def __init__(self, *, folder: Path, scene: str | None, ready: Ready = at_once) -> None:
         self._ready = ready
         self._shelf = Shelf(folder)
         self._first = scene

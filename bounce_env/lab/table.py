@@ -9,6 +9,8 @@ import numpy as np
 
 from bounce_env.engine import EventKind, Status, World
 from bounce_env.lab.movable import drag_speed, is_draggable, movable, size_of, with_walls_at, without_revision
+from bounce_env.lab.parts import parts_of
+from bounce_env.lab.ready import Ready, at_once, wanted_for
 from bounce_env.scene import ALL_FEATURES, Flipper, Paddle, Scene, Wall, scene_from_dict, scene_to_dict
 
 Point = tuple[float, float]
@@ -24,11 +26,10 @@ _CLEAR = 1.0 + 1e-9
 class Table:
     """A scene under a ball that runs. What cannot be changed raises ValueError, and the table is then as before.
 
-    The kernels are the general ones, so that no change waits for a compiler. ready: is called with a scene before it is
-    played, and returns when its kernels are there.
+    The kernels are the general ones, so that no change waits for a compiler. ready: returns when they are there.
     """
 
-    def __init__(self, scene: Scene, ready: Callable[[Scene], None] = lambda scene: None) -> None:
+    def __init__(self, scene: Scene, ready: Ready = at_once) -> None:
         self._ready = ready
         self.undo_steps: list[Scene] = []
         self.revision = 0
@@ -39,7 +40,7 @@ class Table:
         """Play a scene from time 0, with the ball at a place, or anywhere where it fits."""
         if len(scene.elements) > MOST_ELEMENTS:
             raise ValueError(f"elements: there are {len(scene.elements)}, and must be at most {MOST_ELEMENTS}")
-        self._ready(scene)
+        self._ready(wanted_for(scene))
         names = [f"#{i}" for i in range(len(scene.elements))]
         world = World(movable(scene, names), features=ALL_FEATURES)
         if position is None:
@@ -220,21 +221,9 @@ class Table:
             "status": Status(int(self.world.status[0])).name.lower(),
             "bounces": counts.bounces,
             "energy": 0.5 * (vx * vx + vy * vy) - gx * x - gy * y,
-            "parts": self._parts(),
+            "parts": parts_of(self.world.scene, self.world.cores),
             "revision": self.revision,
         }
-
-    def _parts(self) -> list[list[Any]]:
-        """Return [index, [number ...]] of each part: a flipper's angle, a centre, a wall's ends."""
-        found: list[list[Any]] = []
-        for (index, part), (x0, y0, x1, y1) in zip(self.world.scene.parts, self.world.cores.tolist(), strict=True):
-            if isinstance(part, Wall):
-                found.append([index, [x0, y0, x1, y1]])
-            elif isinstance(part, Flipper):
-                found.append([index, [math.atan2(y1 - y0, x1 - x0)]])
-            else:
-                found.append([index, [0.5 * (x0 + x1), 0.5 * (y0 + y1)]])
-        return found
 
 
 def event_of(row: Any) -> list[Any]:

@@ -11,13 +11,15 @@ from tests.browser.shots import compare
 
 pytestmark = pytest.mark.slow
 
-ROOMS = ("", "reflection", "stage")
+ROOMS = ("", "reflection", "stage", "play")
 
 
 def opened(page, lab, room):
     page.goto(lab.address(room))
     if room == "reflection":
         page.wait_for_selector("#numbers tr")
+    if room == "play":
+        page.wait_for_selector("#words:has-text('to start')", timeout=600_000)
     if room == "stage":
         page.wait_for_selector("#elements option", state="attached", timeout=600_000)  # a first one compiles
     return page

@@ -41,7 +41,7 @@ def key_of(env_id: str, kwargs: Mapping[str, Any], scene: Scene) -> str:
 
 
 class HighScores:
-    """The best scores, in FOLDER/high_scores.json; the folder is the user's own where none is given."""
+    """The best scores, in one file of a folder: the user's own where none is given."""
 
     def __init__(self, folder: Path | None = None) -> None:
         self._path = (user_data_path("bounce_env") if folder is None else folder) / "high_scores.json"

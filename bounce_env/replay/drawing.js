@@ -56,7 +56,8 @@ export function disc(target, [x, y], radius, fill) {
 }
 
 function colourOf(element) {
-  if (element.type === "sensor") return element.drain ? COLOURS.drain : COLOURS.sensor;
+  if (element.type === "sensor" && element.drain) return element.center ? COLOURS.mark : COLOURS.drain; // a target, or out
+  if (element.type === "sensor") return COLOURS.sensor;
   return element.b > 1 || element.kick > 0 ? COLOURS.lively : COLOURS.still;
 }
 

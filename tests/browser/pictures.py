@@ -19,7 +19,7 @@ COLOURS = 48
 
 
 def main() -> None:
-    """Write lab_reflection.png and lab_stage.gif."""
+    """Write the pictures into `.github`."""
     path = next(filter(None, map(shutil.which, BROWSERS)))
     with tempfile.TemporaryDirectory() as folder, serving(Path(folder)) as server, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
@@ -30,6 +30,11 @@ def main() -> None:
         page.goto(server.address("stage").partition("?")[0])
         page.wait_for_selector("#elements option", state="attached", timeout=600_000)
         pictures = list(_stage(page))
+        page.goto(server.address("play").partition("?")[0])
+        page.wait_for_selector("#words:has-text('to start')", timeout=600_000)
+        page.keyboard.press("Space")
+        page.wait_for_timeout(6000)
+        Image.open(io.BytesIO(page.screenshot())).quantize(64).save(FOLDER / "lab_play.png", optimize=True)
         browser.close()
     small = [picture.quantize(COLOURS, dither=Image.Dither.NONE) for picture in pictures]
     small[0].save(

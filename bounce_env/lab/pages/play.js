@@ -125,7 +125,7 @@ function begin() {
   [waits, paused, owed, best] = [true, false, 0, null];
   held.clear();
   const name = find("scene").value.trim();
-  ask({ do: "begin", game: find("game").value, scene: name || null }).then(() => canvas.focus());
+  ask({ do: "begin", game: find("game").value, scene: name || null }).then(() => canvas.focus({ preventScroll: true }));
 }
 
 function again() {
@@ -163,7 +163,7 @@ canvas.addEventListener("blur", () => held.clear());
 const fingers = new Map();
 canvas.addEventListener("pointerdown", (event) => {
   event.preventDefault();
-  canvas.focus();
+  canvas.focus({ preventScroll: true });
   canvas.setPointerCapture(event.pointerId);
   if (!now) return;
   if (now.end) return again();

@@ -1,6 +1,21 @@
 // Where balls and parts are at an instant, from a replay's document (docs/replay.md). No drawing, no page.
 "use strict";
 
+/** Return a document with times [s] in place of their numbers: in all lists of rows, the first of a row. */
+export function withTimes(document) {
+  const at = document.instants;
+  const timed = ([first, ...others]) => [at[first], ...others];
+  const path = (row) => (row.length === 4 ? [at[row[0]], at[row[1]], row[2], row[3]] : timed(row));
+  return {
+    ...document,
+    balls: document.balls.map((paths) => paths.map(path)),
+    parts: document.parts.map((part) => ({ ...part, paths: part.paths.map(timed) })),
+    changes: document.changes.map(timed),
+    score: document.score.map(timed),
+    events: document.events.map(timed),
+  };
+}
+
 /** Return the index of the last item that begins at or before `time`; 0 where none does. */
 export function lastBefore(items, time) {
   let low = 0;

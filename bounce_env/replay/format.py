@@ -2,6 +2,7 @@
 
 import json
 import re
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -13,17 +14,21 @@ from bounce_env.wording import shown
 FORMAT = 1
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
-Row7 = Annotated[list[Number], Len(7, 7)]
-Series = Annotated[list[Number], Len(1, 64)]
+Instant = Annotated[int, Field(ge=0)]
+"""A time, as an index of the document's `instants`."""
 Index = Annotated[int, Field(ge=-1)]
+Series = Annotated[list[Number], Len(1, 64)]
+Flight = tuple[Instant, Number, Number, Number, Number, Number, Number]
+BallEvent = tuple[Instant, int, Annotated[int, Field(ge=0)], Index, Number, Number, Number, Number]
+PartEvent = tuple[Instant, int, Literal[-1], Index]
 
 
 class Part(BaseModel):
-    """Of a moving part: [begin, [number ...], [its rate ...]], one after the other."""
+    """Of a moving part: [instant, [number ...], [its rate ...]], one after the other."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
     element: Annotated[int, Field(ge=0)]
-    paths: Annotated[list[tuple[Number, list[Number], list[Number]]], Len(1)]
+    paths: Annotated[list[tuple[Instant, list[Number], list[Number]]], Len(1)]
 
 
 class Document(BaseModel):
@@ -38,15 +43,14 @@ class Document(BaseModel):
     ball_radius: Annotated[Number, Field(ge=0.0)]
     elements: list[dict[str, JsonValue]]
     end: Annotated[Number, Field(ge=0.0)]
-    balls: list[Annotated[list[Row7 | tuple[Number, Number, Series, Series]], Len(1)]]
-    parts: list[Part]
-    changes: list[tuple[Number, Annotated[int, Field(ge=0)], str, JsonValue]]
-    score: list[tuple[Number, Number]]
-    lost: Annotated[int, Field(ge=0)]
     kinds: list[str]
-    events: list[
-        tuple[Number, int, Index, Index, Number, Number, Number, Number, Number, Number, Number, Number]
-    ]  # fmt: skip
+    lost: Annotated[int, Field(ge=0)]
+    instants: list[Number]
+    balls: list[Annotated[list[Flight | tuple[Instant, Instant, Series, Series]], Len(1)]]
+    parts: list[Part]
+    changes: list[tuple[Instant, Annotated[int, Field(ge=0)], str, JsonValue]]
+    score: list[tuple[Instant, Number]]
+    events: list[BallEvent | PartEvent]
 
 
 _READER = TypeAdapter(Document)
@@ -86,16 +90,31 @@ def _first_of(error: ValidationError, source: str) -> str:
 
 
 def _check_indices(document: dict[str, Any], source: str) -> None:
-    """Raise ValueError where a number names an element, a kind or a field that is not there."""
-    elements, kinds = len(document["elements"]), len(document["kinds"])
+    """Raise ValueError where a number names an instant, an element, a kind, a ball or a field that is not there."""
+
+    def below(place: str, number: int, count: int) -> None:
+        if number >= count:
+            raise ValueError(f"{source}: {place} = {number}: must be below {count}")
+
+    instants, elements = document["instants"], len(document["elements"])
+    kinds, balls = len(document["kinds"]), len(document["balls"])
+    if any(later <= earlier for earlier, later in pairwise(instants)):
+        raise ValueError(f"{source}: instants: each must be greater than the one before")
+    for b, paths in enumerate(document["balls"]):
+        for i, path in enumerate(paths):
+            for k in (0, 1) if len(path) == 4 else (0,):
+                below(f"balls[{b}][{i}][{k}]", path[k], len(instants))
     for i, part in enumerate(document["parts"]):
-        if part["element"] >= elements:
-            raise ValueError(f"{source}: parts[{i}].element = {part['element']}: must be below {elements}")
+        below(f"parts[{i}].element", part["element"], elements)
+        for k, path in enumerate(part["paths"]):
+            below(f"parts[{i}].paths[{k}][0]", path[0], len(instants))
+    for name in ("changes", "score", "events"):
+        for i, row in enumerate(document[name]):
+            below(f"{name}[{i}][0]", row[0], len(instants))
     for i, (_, element, field, _) in enumerate(document["changes"]):
-        if element >= elements:
-            raise ValueError(f"{source}: changes[{i}][1] = {element}: must be below {elements}")
+        below(f"changes[{i}][1]", element, elements)
         if field not in ("disabled", *document["elements"][element]):
             raise ValueError(f"{source}: changes[{i}][2] = {shown(field)}: must be a field of its element")
-    for i, (_, kind, *_) in enumerate(document["events"]):
-        if not 0 <= kind < kinds:
-            raise ValueError(f"{source}: events[{i}][1] = {kind}: must be from 0 to {kinds - 1}")
+    for i, (_, kind, ball, *_) in enumerate(document["events"]):
+        below(f"events[{i}][1]", kind, kinds)
+        below(f"events[{i}][2]", ball, balls)

@@ -1,12 +1,12 @@
 // Shows a replay: a canvas, the controls below it, and the list of events.
 "use strict";
-import { ballAt, elementsAt, lastBefore, partAt, scoreAt, velocityAt } from "./flight.js";
+import { ballAt, elementsAt, lastBefore, partAt, scoreAt, velocityAt, withTimes } from "./flight.js";
 import { COLOURS, drawBall, drawPart, drawStanding, fit, inMetres, line, placeOf, trailOf, viewOf } from "./drawing.js";
 
 const TRAIL = 0.4; // seconds of the ball's way that are drawn
 const JUMP = 1; // seconds by the arrow keys on the scene
 
-const replay = JSON.parse(document.getElementById("replay").textContent);
+const replay = withTimes(JSON.parse(document.getElementById("replay").textContent));
 const find = (id) => document.getElementById(id);
 const [canvas, clock, slider, speed, list, values] = ["scene", "clock", "time", "speed", "events", "values"].map(find);
 const context = canvas.getContext("2d");
@@ -56,7 +56,7 @@ function draw() {
 function drawNormal() {
   const event = replay.events[list.selectedIndex];
   if (!event || event[0] !== now || event[2] < 0) return;
-  const [x, y, nx, ny] = event.slice(4, 8);
+  const [[x, y], [nx, ny]] = [ballAt(replay.balls[event[2]], now), event.slice(4, 6)];
   const [r, length] = [replay.ball_radius, (40 * view.ratio) / view.scale];
   context.strokeStyle = COLOURS.mark;
   line(context, [x - r * nx, y - r * ny], [x - r * nx + length * nx, y - r * ny + length * ny]);
@@ -104,9 +104,10 @@ function toEvent(index) {
   go(replay.events[index][0], index);
 }
 
-for (const [time, kind, ball, element, , , , , vx0, vy0, vx1, vy1] of replay.events) {
+for (const [time, kind, ball, element, , , vx0, vy0] of replay.events) {
   const option = document.createElement("option");
-  const speeds = ball < 0 ? "" : `  ${short(Math.hypot(vx0, vy0))} → ${short(Math.hypot(vx1, vy1))} m/s`;
+  const after = ball < 0 ? null : velocityAt(replay.balls[ball], time);
+  const speeds = after ? `  ${short(Math.hypot(vx0, vy0))} → ${short(Math.hypot(...after))} m/s` : "";
   option.textContent = `${time.toFixed(4)}  ${replay.kinds[kind]}  ${named(element)}${speeds}`;
   list.append(option);
 }

@@ -25,7 +25,8 @@ def test_a_stored_replay_opens_as_document_and_as_page(tmp_path):
     alone, in_page = load_replay(STORED / "v1.json"), load_replay(STORED / "v1.html")
     assert alone.document == in_page.document == V1
     assert alone.document["about"] == {"id": "Bounce/Own-v0", "kwargs": {"time_limit": 2}, "seed": 7}
-    assert alone.document["changes"] == [[0.6, 1, "disabled", True]]
+    (instant, *switched) = alone.document["changes"][0]
+    assert (alone.document["instants"][instant], *switched) == (0.6, 1, "disabled", True)
     (tmp_path / "own.toml").write_text(alone.document["scene"])
     assert [element.name for element in load_scene(tmp_path / "own.toml").elements][1:] == ["ramp", "flipper"]
 
@@ -64,7 +65,13 @@ REFUSED = {
     "a word for a number": (changed(["end"], "1"), "run.json: end = '1': Input should be a valid number"),
     "what is not known": (changed(["more"], 1), "run.json: more = 1"),
     "element that is not there": (changed(["parts", 0, "element"], 9), r"run.json: parts\[0\].element = 9: must be"),
-    "kind that is not there": (changed(["events", 0, 1], 99), r"run.json: events\[0\]\[1\] = 99: must be from 0 to"),
+    "instant that is not there": (
+        changed(["balls", 0, 0, 0], 999),
+        r"run.json: balls\[0\]\[0\]\[0\] = 999: must be below",
+    ),
+    "ball that is not there": (changed(["events", 1, 2], 9), r"run.json: events\[1\]\[2\] = 9: must be below 1"),
+    "instants that go back": (changed(["instants", 3], 0.0), "run.json: instants: each must be greater"),
+    "kind that is not there": (changed(["events", 0, 1], 99), r"run.json: events\[0\]\[1\] = 99: must be below"),
     "field that is not there": (changed(["changes", 0, 2], "x"), r"run.json: changes\[0\]\[2\] = 'x': must be a field"),
     "not a number": (changed(["end"], float("nan")), "run.json: "),
 }

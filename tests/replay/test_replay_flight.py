@@ -36,8 +36,8 @@ RUNS = {
 PROGRAM = """
 import { readFileSync } from "node:fs";
 const [flight, document, instants] = process.argv.slice(1).map((name) => readFileSync(name, "utf8"));
-const { ballAt, velocityAt, partAt } = await import("data:text/javascript," + encodeURIComponent(flight));
-const replay = JSON.parse(document);
+const { ballAt, velocityAt, partAt, withTimes } = await import("data:text/javascript," + encodeURIComponent(flight));
+const replay = withTimes(JSON.parse(document));
 const rows = JSON.parse(instants).map((t) => [
   ...ballAt(replay.balls[0], t), ...velocityAt(replay.balls[0], t),
   ...replay.parts.flatMap((part) => partAt(part.paths, t)),

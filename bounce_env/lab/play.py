@@ -9,6 +9,7 @@ import gymnasium as gym
 import numpy as np
 from pydantic import Field
 
+from bounce_env.games.episode import FPS
 from bounce_env.lab.messages import FileName, Message, Point, read, reader
 from bounce_env.lab.parts import parts_of
 from bounce_env.lab.pointing import pointed
@@ -16,9 +17,11 @@ from bounce_env.lab.ready import Ready, Wanted, at_once
 from bounce_env.lab.scores import HighScores, key_of
 from bounce_env.lab.shelf import Shelf
 from bounce_env.scene import Scene, scene_to_dict
+from bounce_env.window.film import Film
 from bounce_env.window.keys import controls_for
 
 GAMES = {"paddle": "Bounce/Paddle-v0", "pinball": "Bounce/Pinball-v0", "walls": "Bounce/Walls-v0"}
+FILM_HEIGHT = 720  # pixels
 MOST_FRAMES = 6  # of 1/60 s, that one message plays
 
 
@@ -53,7 +56,14 @@ class SaveReplay(Message):
     name: FileName
 
 
-_MESSAGES = reader(Begin | Again | Step | SaveReplay)
+class MakeFilm(Message):
+    """Film the game from now on into a file of the folder; None: complete the film."""
+
+    do: Literal["film"]
+    name: FileName | None
+
+
+_MESSAGES = reader(Begin | Again | Step | SaveReplay | MakeFilm)
 
 
 class Play:
@@ -71,6 +81,7 @@ class Play:
         self._shelf, self._ready = Shelf(folder), ready
         self._scores = scores or HighScores()
         self._env: Any = None
+        self._film: Film | None = None
         self._end: str | None = None
         self._told: Scene | None = None
 
@@ -92,8 +103,10 @@ class Play:
         path = None if message.scene is None else self._shelf.path(message.scene)
         kwargs: dict[str, Any] = {} if path is None else {"scene": path}
         self._ready(Wanted(env_id, "" if path is None else str(path)))
+        self.close()
+        kwargs |= {"frame_skip": 1, "record_events": True, "render_mode": "rgb_array", "height": FILM_HEIGHT}
         try:
-            self._env = gym.make(env_id, frame_skip=1, record_events=True, disable_env_checker=True, **kwargs).unwrapped
+            self._env = gym.make(env_id, disable_env_checker=True, **kwargs).unwrapped
         except ValueError as error:
             raise ValueError(str(error).partition(" was raised from the environment creator")[0]) from error
         self._controls = controls_for(self._env.action_space)
@@ -114,6 +127,8 @@ class Play:
                 break
             _, _, terminated, truncated, info = self._env.step(self._action(message))
             self._hits |= self._env.picture().hits > 0
+            if self._film is not None:
+                self._film.add(self._env.render())
             if terminated or truncated:
                 self._end = str(info["end_reason"])
                 extra["best"] = self._noted(float(info["score"]))
@@ -129,6 +144,32 @@ class Play:
         except OSError as error:
             raise ValueError(f"{path.name}: cannot be written: {error.strerror}") from error
         return {"notice": f"saved {path}"}
+
+    @_do.register
+    def _(self, message: MakeFilm) -> dict[str, Any]:
+        if message.name is None:
+            path = self.close()
+            return {} if path is None else {"notice": f"saved {path}"}
+        path = self._shelf.folder / f"{message.name}.mp4"
+        if path.exists():
+            raise ValueError(f"{path.name} is there already: film under another name")
+        height, width, _ = self._env.render().shape
+        try:
+            self._film = Film(path, (width, height), FPS)
+        except OSError as error:
+            raise ValueError(f"no film: {error}") from error
+        return {}
+
+    def close(self) -> Path | None:
+        """Complete the film, if there is one; returns its path. Raises ValueError where it cannot be completed."""
+        film, self._film = self._film, None
+        if film is None:
+            return None
+        try:
+            film.finish()
+        except OSError as error:
+            raise ValueError(f"no film: {error}") from error
+        return film.path
 
     def _reset(self, seed: int | None) -> None:
         self._env.reset(seed=seed)
@@ -170,6 +211,7 @@ class Play:
             "score": float(picture.score),
             "status": env.status,
             "end": self._end,
+            "films": self._film is not None,
         }
         if self._told != scene:  # a new level, or a target that is put elsewhere
             self._told = scene

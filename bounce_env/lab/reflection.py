@@ -38,6 +38,9 @@ class Reflection:
         """Return the bounce that a message asks for; raises ValueError for a vector without a length."""
         return explained(read(_MESSAGES, text))
 
+    def close(self) -> None:
+        """Nothing has begun."""
+
 
 def explained(asked: Reflect) -> dict[str, Any]:
     """Return the bounce: vectors as [x, y], the rest as numbers; `ip` and `share` are None where nothing is hit."""

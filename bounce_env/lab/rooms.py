@@ -21,5 +21,8 @@ class Room(Protocol):
     def answer(self, text: str) -> Mapping[str, Any]:
         """Return the answer to a message, JSON; raises ValueError for what is wrong with it."""
 
+    def close(self) -> object:
+        """End what has begun: the tab is gone."""
+
 
 ROOMS: Mapping[str, type[Room]] = {"reflection": Reflection, "stage": Stage, "play": Play}

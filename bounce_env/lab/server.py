@@ -5,6 +5,7 @@ import json
 import socket
 import sys
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -105,12 +106,15 @@ class Server:
                 await tab.close(BUSY, f"{MOST_SESSIONS} tabs are open, and no more may be: close one")
                 return
             self._sessions += 1
+            mine = room(**self._given)
             try:
-                await _serve(tab, room(**self._given))
+                await _serve(tab, mine)
             except (WebSocketDisconnect, asyncio.CancelledError):
                 pass  # the tab was closed, or the lab ends
             finally:
                 self._sessions -= 1
+                with suppress(ValueError):  # nobody is there to be told
+                    mine.close()
 
         return talk
 

@@ -152,6 +152,9 @@ class Stage:
         extra = self._do(message) or {}
         return {**self._view(), **extra}
 
+    def close(self) -> None:
+        """Nothing outlives a message."""
+
     @property
     def table(self) -> Table:
         """The table; there is one from the first message on."""

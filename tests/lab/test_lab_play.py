@@ -87,6 +87,21 @@ def test_a_game_ends_is_noted_begun_anew_and_saved(tmp_path):
     assert (view["end"], view["best"], view["score"]) == (None, score, 0.0)
 
 
+def test_a_film_is_made_whole_and_ends_with_the_tab(tmp_path):
+    tab = Tab(tmp_path, "walls")
+    assert tab.do("film", name="mine")["films"]
+    tab.do("step", frames=6)
+    view = tab.do("film", name=None)
+    assert (view["films"], view["notice"]) == (False, f"saved {tmp_path / 'mine.mp4'}")
+    assert (tmp_path / "mine.mp4").stat().st_size > 1000
+    with pytest.raises(ValueError, match=r"mine\.mp4 is there already"):
+        tab.do("film", name="mine")
+    tab.do("film", name="other")
+    tab.do("step", frames=6)
+    tab.room.close()
+    assert (tmp_path / "other.mp4").stat().st_size > 1000
+
+
 def test_a_scene_of_the_folder_is_played_and_a_wrong_one_refused(tmp_path):
     (tmp_path / "mine.toml").write_text(dump_scene(load_scene("paddle")))
     (tmp_path / "box.toml").write_text(dump_scene(load_scene("box")))

@@ -37,7 +37,7 @@ function take(answer) {
   if (answer.error) return void notice(answer.error);
   notice(answer.notice || "", "good");
   if (answer.best !== undefined) best = answer.best;
-  if (answer.controls) find("controls").textContent = `${answer.controls}. P: pause, R: new game. Mouse or finger: ${pointing()}.`;
+  if (answer.controls) find("controls").textContent = `${answer.controls}. P: pause, R: new game, V: film. Mouse or finger: ${pointing()}.`;
   const jumped = !now || now.balls.length === 0;
   now = answer;
   if (answer.scene) {
@@ -104,6 +104,8 @@ function tell() {
   if (best !== null) left.push(`Best ${Number(best.toPrecision(6))}`);
   find("hud").textContent = left.join("    ");
   find("pause").setAttribute("aria-pressed", String(paused));
+  find("film").setAttribute("aria-pressed", String(now.films));
+  find("film").textContent = now.films ? "Stop filming" : "Film";
   if (now.end) words.textContent = `Game over: ${now.end.replace("_", " ")}\nScore ${Number(now.score.toPrecision(6))}\nR: play again`;
   else if (waits) words.textContent = "Press a key, click or touch to start";
   else words.textContent = paused ? "Paused\nP: go on" : "";
@@ -152,6 +154,7 @@ canvas.addEventListener("keydown", (event) => {
     tell();
   } else if (name === "p") pause();
   else if (name === "r") again();
+  else if (name === "v") film();
   if (!USED.has(name)) return;
   event.preventDefault();
   held.add(name);
@@ -208,6 +211,8 @@ function nearestEnd([x, y]) {
 find("begin").addEventListener("click", begin);
 find("game").addEventListener("input", begin);
 find("pause").addEventListener("click", pause);
+const film = () => now && ask({ do: "film", name: now.films ? null : find("name").value });
+find("film").addEventListener("click", film);
 find("save").addEventListener("click", () => now && ask({ do: "save", name: find("name").value }));
 window.addEventListener("resize", resize);
 requestAnimationFrame(frame);

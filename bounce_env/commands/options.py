@@ -283,6 +283,23 @@ class Report:
 
 
 @dataclass(frozen=True)
+class Compile:
+    """Compile kernels now, so that nobody waits later: of games, of scenes, or all that comes with the package.
+
+    They are kept on disk; a game takes up to a minute, once on each machine and with each version.
+    """
+
+    names: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
+    """Games, built-in scenes and .toml files. Default: all, the games and the kernels that any scene can run on."""
+
+    def run(self) -> int:
+        """Compile; returns the exit code."""
+        from bounce_env.commands.compile import compile_kernels  # noqa: PLC0415
+
+        return compile_kernels(self.names)
+
+
+@dataclass(frozen=True)
 class Doctor:
     """Print versions, processor, cache folder, display and ffmpeg: what a bug report needs."""
 
@@ -293,7 +310,7 @@ class Doctor:
         return diagnose()
 
 
-Command: TypeAlias = Scenes | Play | Watch | Lab | Replay | Report | Doctor
+Command: TypeAlias = Scenes | Play | Watch | Lab | Replay | Report | Compile | Doctor
 _Commands: TypeAlias = (
     Annotated[Watch, tyro.conf.subcommand("watch")]
     | Annotated[Play, tyro.conf.subcommand("play")]
@@ -301,6 +318,7 @@ _Commands: TypeAlias = (
     | Annotated[Lab, tyro.conf.subcommand("lab")]
     | Annotated[Replay, tyro.conf.subcommand("replay")]
     | Annotated[Report, tyro.conf.subcommand("report")]
+    | Annotated[Compile, tyro.conf.subcommand("compile")]
     | Annotated[Doctor, tyro.conf.subcommand("doctor")]
 )
 

@@ -44,7 +44,7 @@ class Table:
         names = [f"#{i}" for i in range(len(scene.elements))]
         world = World(movable(scene, names), features=ALL_FEATURES)
         if position is None:
-            position = _free_place(world, scene)
+            position = free_place(world, scene)
         try:
             world.reset(position=position, velocity=velocity)
         except ValueError as error:
@@ -272,7 +272,7 @@ def _set_clear(place: Point, before: Wall, after: Wall, radius: float) -> Point:
     return place[0] - wy / length * off, place[1] + wx / length * off
 
 
-def _free_place(world: World, scene: Scene) -> Point:
+def free_place(world: World, scene: Scene) -> Point:
     """Return where a ball fits: the first of a net of places, from above."""
     left, bottom, right, top = scene.bounds
     for y in np.linspace(top, bottom, 23)[1:-1].tolist():

@@ -26,6 +26,7 @@ FACE = {
     "world_kernels",
     "packing",
     "placement",
+    "recorded",
     "snapshot",
     "tolerances",
     "tutorial",

@@ -29,7 +29,7 @@ def elements(scene: Scene, spec: type) -> list:
 def test_which_there_are():
     of_games = {"paddle", "paddle_levels", "pinball", "walls"}
     of_report = {problem.name for problem in PROBLEMS}
-    assert set(builtin_scenes()) == {"guides", "pegs"} | of_games | of_report
+    assert set(builtin_scenes()) == {"guides", "pegs", "tutorial"} | of_games | of_report
 
 
 @pytest.mark.parametrize("spec", [Scene, Ball, *get_args(Element)], ids=lambda spec: spec.__name__)

@@ -15,6 +15,7 @@ def replacing(path: Path) -> Iterator[Path]:
     the next one.
     """
     unfinished = path.with_name(f".{path.stem}-unfinished{path.suffix}")
+    unfinished.unlink(missing_ok=True)  # it could be a link that leads elsewhere
     try:
         yield unfinished
         with unfinished.open("rb") as file:

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.compile.jit import from_python
-from bounce_env.engine.memory.records import CARRIED_ALONG, ON_CURVE, OUT
-from bounce_env.engine.memory.state import Recording, State
+from bounce_env.engine.memory.records import CARRIED_ALONG, MOMENT, ON_CURVE, OUT
+from bounce_env.engine.memory.state import Recording, State, going_on
 from bounce_env.engine.motion.carried import Carried, carried_after
 from bounce_env.engine.motion.curve_slide import CurveSlide, curve_slide_after
 from bounce_env.scene import Flipper, Scene, Wall
@@ -97,6 +97,17 @@ def recorded_of(scene: Scene, state: State, pages: Sequence[Recording], world: i
         tuple(_switched(pages)),
         end,
     )
+
+
+def with_present_moment(page: Recording, state: State, world: int) -> Recording:
+    """Return a page with the moment now at its end: balls and parts may have been moved since the last event."""
+    clock = state.worlds[world]
+    moment = np.array([(clock["time_hi"], clock["time_lo"], len(page.ledger))], MOMENT)
+    now = [moment, *(None if array is None else array[world : world + 1] for array in going_on(state))]
+    kept: list[Any] = [
+        None if array is None else np.concatenate([array, last]) for array, last in zip(page[2:], now, strict=True)
+    ]
+    return Recording(page.head, page.ledger, *kept)
 
 
 def _moments(pages: Sequence[Recording]) -> Iterator[tuple[Recording, int]]:

@@ -25,7 +25,7 @@ from bounce_env.engine.motion.parts import part_offset_at
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import features_of_worlds, forced_features, pack, switch_round_ends
 from bounce_env.engine.placement import Core, part_cores_at_start, place_clear, separate_placed_balls
-from bounce_env.engine.recorded import Recorded, recorded_of
+from bounce_env.engine.recorded import Recorded, recorded_of, with_present_moment
 from bounce_env.engine.snapshot import restore_bytes, snapshot_bytes
 from bounce_env.engine.world_kernels import (
     world_advance_to,
@@ -95,6 +95,7 @@ class World:
     def record(self, on: bool = True) -> None:
         """Keep all that happens from the next `reset` on, for `recorded`; with False: no longer.
 
+        Until `restore` or `replace`, too: nothing recorded leads to what comes then.
         Recording changes no bit of the motion. Some kilobytes are kept for each event and each call.
         """
         if not isinstance(on, bool | np.bool_):
@@ -108,7 +109,8 @@ class World:
         self._check_started()
         if self._recorded is None:
             raise RuntimeError("nothing is recorded: call record(), and then reset()")
-        return recorded_of(self.scene, self._state, self._recorded, 0, self.time)
+        now = with_present_moment(taken(self._state.recording), self._state, 0)
+        return recorded_of(self.scene, self._state, [*self._recorded, now], 0, self.time)
 
     def advance(self, seconds: float, *, ledger: bool = False, max_events: int = MAX_EVENTS) -> npt.NDArray[Any] | None:
         """Let `seconds` pass; return the ledger of this call if asked for, otherwise None.
@@ -318,6 +320,7 @@ class World:
         the world is then as before.
         """
         restore_bytes(data, self.scene, self._state)
+        self._recorded = None
         self._switch_ends()
         self._started = True
 

@@ -104,18 +104,23 @@ def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, d
     return snapshot, others
 
 
-def episode_replay(batch: Batch, spec: EnvSpec | None, seed: int | None, *, last: bool) -> Replay:
+def episode_replay(batch: Batch, spec: EnvSpec | None, *, last: bool) -> Replay:
     """Return the present episode of the recorded world, or the one before it; RuntimeError where there is none."""
     recorder = batch.recorder
     episode = None if recorder is None else recorder.last if last else recorder.present
-    if recorder is None or episode is None:
+    if recorder is None:
         raise RuntimeError("nothing is recorded: record() or record_events=True, and then reset()")
+    if episode is None:
+        which = "one was before it" if last else "the present one began"
+        raise RuntimeError(
+            f"nothing is recorded of this episode: recording began, or a state was restored, after {which}"
+        )
     about = {} if spec is None else {"id": spec.id, "kwargs": spec.kwargs}
     return replay_of(
         run_of(episode, batch.state, recorder.world),
         score=((step.time, step.score) for step in episode.steps),
         lost=episode.lost,
-        about={**about, "seed": seed},
+        about={**about, "seed": episode.origin.seed, "episode": episode.origin.number},
     )
 
 
@@ -140,7 +145,6 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         self._seeded = False
         self._running = False
         self._time_limits: tuple[gym.Wrapper[Any, Any, Any, Any], ...] = ()
-        self._seed: int | None = None
         if not isinstance(own["record_events"], bool):
             raise ValueError(f"record_events = {shown(own['record_events'])}: must be True or False")
         if own["record_events"]:
@@ -170,8 +174,8 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         start = start_rows(self._batch.game, 1, others)
         super().reset(seed=seed)
         if seed is not None or not self._seeded:
-            self._batch.seed(0, world_seed(self.np_random))
-            self._seeded, self._seed = True, self.np_random_seed
+            self._batch.seed(0, world_seed(self.np_random), self.np_random_seed)
+            self._seeded = True
         self._batch.reset(np.ones(1, np.bool_), start)
         self._frames.update((0,))
         self._running = True
@@ -217,15 +221,17 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         return None
 
     def record(self, on: bool = True) -> None:
-        """Keep all events from the next reset on, for `replay`; with False: no longer. It changes no bit of play."""
+        """Keep all events from the next episode on, for `replay`; with False: no longer. It changes no bit of play."""
+        if not isinstance(on, bool):
+            raise ValueError(f"on = {shown(on)}: must be True or False")
         self._batch.record(0 if on else None)
 
     def replay(self, *, last: bool = False) -> Replay:
         """Return the present episode as a replay, as far as it has been played; last: the one before it.
 
-        Raises RuntimeError where it was not recorded: `record_events=True` or `record()` came after its reset.
+        Raises RuntimeError where it was not recorded from its beginning on.
         """
-        return episode_replay(self._batch, self.spec, self._seed, last=last)
+        return episode_replay(self._batch, self.spec, last=last)
 
     def picture(self) -> Picture:
         """Return what a frame shows now. Raises ResetNeeded before the first reset."""

@@ -248,12 +248,12 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return self._observations()
 
     def record(self, world: int | None) -> None:
-        """Keep all events of one world from its next reset on, for `replay`; None: of none any more."""
+        """Keep all events of one world from its next episode on, for `replay`; None: of none any more."""
         self._batch.record(None if world is None else whole("world", world, 0, self.num_envs - 1))
 
     def replay(self, *, last: bool = False) -> Replay:
         """Return the present episode of the recorded world as a replay, see the single environment."""
-        return episode_replay(self._batch, self.spec, None, last=last)
+        return episode_replay(self._batch, self.spec, last=last)
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
@@ -284,7 +284,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         generators = {w: seeding.np_random(seeds[w])[0] for w in np.flatnonzero(mask).tolist() if seeds[w] is not None}
         generators |= {w: self.np_random for w in np.flatnonzero(mask & ~self._seeded).tolist() if seeds[w] is None}
         for w, generator in generators.items():
-            self._batch.seed(w, world_seed(generator))
+            self._batch.seed(w, world_seed(generator), seeds[w])
         self._seeded |= mask
         self._begun = bool(self._seeded.all())
 

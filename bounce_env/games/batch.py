@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import interpreted
-from bounce_env.engine.memory.records import Array
+from bounce_env.engine.memory.records import NO_WORLD, Array
 from bounce_env.engine.memory.state import State, moving_arrays, with_recording
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import pack
@@ -31,7 +31,7 @@ from bounce_env.games.episode import (
 )
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
-from bounce_env.games.recorder import MOMENTS, ROWS, Recorder, Step
+from bounce_env.games.recorder import MOMENTS, ROWS, Origin, Recorder, Step
 from bounce_env.games.state_copy import States, check_rows, clone_rows, restore_rows
 from bounce_env.games.timing import NO_STEP_LIMIT
 from bounce_env.scene import Scene, Sensor
@@ -67,6 +67,7 @@ class Batch:
         self._process = os.getpid()
         self._handle: Any = None
         self.recorder: Recorder | None = None
+        self._given: dict[int, tuple[int, int | None]] = {}  # by world: its seed, and from which its user has it
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_threads": None, "_handle": None}
@@ -78,8 +79,9 @@ class Batch:
             self.rules = self.rules._replace(pace=self.rules.pace._replace(steps=steps))
             self._handle = None
 
-    def seed(self, world: int, seed: np.uint64) -> None:
-        """Let the stream of episodes of a world begin anew from `seed`."""
+    def seed(self, world: int, seed: np.uint64, given: int | None = None) -> None:
+        """Let the stream of episodes of a world begin anew from `seed`. given: from which its user has it."""
+        self._given[world] = int(seed), given
         self.episodes[world].world_seed = seed
         self.episodes[world].episodes = 0
 
@@ -93,11 +95,20 @@ class Batch:
         self._start[:] = np.nan
         self._take_recording(stepped=False)
 
+    def _origin(self, world: int) -> Origin:
+        episode = self.episodes[world]
+        world_seed, given = self._given.get(world, (-1, None))
+        seed = given if world_seed == int(episode["world_seed"]) else None  # else it is that of a state restored
+        return Origin(int(episode["world_seed"]), int(episode["episodes"]), seed)
+
     def record(self, world: int | None) -> None:
-        """Keep what happens in a world from its next reset on, in `recorder`; None: no longer."""
-        self.recorder = None if world is None else Recorder(world)
+        """Keep what happens in a world from its next episode on, in `recorder`; None: no longer."""
+        if world is not None and self.recorder is not None and self.recorder.world == world:
+            return
+        self.recorder = None if world is None else Recorder(world, self._origin(world))
         room = () if world is None else (ROWS, MOMENTS)
         self.state = with_recording(self.state, *room)
+        self.state.recording.head["world"] = NO_WORLD if world is None else world
         self._handle = None
         self.__dict__.pop("bound_state", None)
 
@@ -109,10 +120,11 @@ class Batch:
         episode, ended = self.episodes[w], self.results.ended[w]
         step, over = None, ended["end"] != RUNNING
         # Where an episode begins in place of a step there is none.
-        if stepped and (over or episode["episodes"] == recorder.number):
+        origin = self._origin(w)
+        if stepped and (over or origin == recorder.origin):
             time, score = (ended["seconds"], ended["score"]) if over else (episode["frames"] / FPS, episode["score"])
             step = Step(float(time), float(self.results.rewards[w]), float(score))
-        recorder.take(self.state, self.scene(w), int(episode["episodes"]), step)
+        recorder.take(self.state, self.scene(w), origin, step)
 
     @cached_property
     def bound_state(self) -> Any:
@@ -166,7 +178,7 @@ class Batch:
         self.check_states(states, mask)
         restore_rows(self._rows(), mask, states)
         if self.recorder is not None and mask[self.recorder.world]:
-            self.recorder.interrupt(self.state)
+            self.recorder.interrupt(self.state, self._origin(self.recorder.world))
         if self.game.owns_scenes:  # world w has row w of the tables for itself, wherever its state comes from
             self.state.worlds["scene"] = np.arange(self.worlds)
 

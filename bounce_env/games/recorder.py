@@ -7,9 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bounce_env.engine.memory.records import MOMENT, NO_WORLD
-from bounce_env.engine.memory.state import Recording, State, going_on, taken
-from bounce_env.engine.recorded import Change, Recorded, recorded_of
+from bounce_env.engine.memory.state import Recording, State, taken
+from bounce_env.engine.recorded import Change, Recorded, recorded_of, with_present_moment
 from bounce_env.scene import Scene
 
 ROWS, MOMENTS = 16_384, 16_384
@@ -32,73 +31,77 @@ class Stretch(NamedTuple):
     pages: list[Recording]
 
 
+class Origin(NamedTuple):
+    """Where an episode comes from: a world's stream of episodes, and its number in it, from 1 on.
+
+    seed: from which its user has the stream; None where that is not known.
+    """
+
+    world_seed: int
+    number: int
+    seed: int | None
+
+
 class Episode:
     """An episode as far as it has been played."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, origin: Origin, scene: Scene) -> None:
+        self.origin = origin
         self.stretches = [Stretch(0.0, scene, [])]
         self.steps: list[Step] = []
         self.lost = 0  # rows and moments that found no room
 
 
 class Recorder:
-    """Keeps what happens in one world of a batch from its next reset on."""
+    """Keeps what happens in one world of a batch, from the next episode on that begins in it.
 
-    def __init__(self, world: int) -> None:
+    origin: of the episode that is played when it is made.
+    """
+
+    def __init__(self, world: int, origin: Origin) -> None:
         self.world = world
         self.present: Episode | None = None
         self.last: Episode | None = None
-        self.number = -1  # of the present episode, as the batch counts them
+        self.origin: Origin | None = origin  # of the episode that is played; None: one is about to begin
         self._instant = math.inf  # of the last moment
 
     def begin(self, state: State) -> None:
         """Get ready for an episode that begins by a reset."""
         taken(state.recording)
-        state.recording.head["world"] = self.world
-        self._instant = math.inf
+        self.origin, self._instant = None, math.inf
 
-    def interrupt(self, state: State) -> None:
-        """Stop until the next reset: the world goes on from another state, to which nothing recorded leads."""
-        state.recording.head["world"] = NO_WORLD
+    def interrupt(self, state: State, origin: Origin) -> None:
+        """Wait for the next episode: the world goes on from another state, to which nothing recorded leads.
+
+        origin: of the episode that goes on.
+        """
         taken(state.recording)
-        self.present = None
+        self.last, self.present = self.present or self.last, None
+        self.origin, self._instant = origin, math.inf
 
-    def take(self, state: State, scene: Scene, number: int, step: Step | None) -> None:
+    def take(self, state: State, scene: Scene, origin: Origin, step: Step | None) -> None:
         """Take over what has happened.
 
-        scene, number: of the episode that is played now. step: what the last step gave, where there was one; an episode
+        scene, origin: of the episode that is played now. step: what the last step gave, where there was one; an episode
         that has begun in it began after it.
 
         A game that begins anew within an episode sets the world's clock back, and may play trials before it does: what
         lies between the first time and the last that it was set back has never been shown.
         """
-        recording = state.recording
-        if recording.head[0]["world"] != self.world:
-            return
-        page = _with_present_moment(taken(recording), state, self.world)
+        page = with_present_moment(taken(state.recording), state, self.world)
         before, after = _around_restarts(page, self._instant)
         self._instant = float(page.moments[-1]["hi"])
         if self.present is not None:
             self.present.stretches[-1].pages.append(before)
             if step is not None:
                 self.present.steps.append(step)
-        if self.present is None or number != self.number:
-            self.last, self.present, self.number = self.present or self.last, Episode(scene), number
+        if origin != self.origin:
+            self.last, self.present, self.origin = self.present or self.last, Episode(origin, scene), origin
             self.present.stretches[-1].pages.append(after)
-        elif len(after.moments):
+        elif self.present is not None and len(after.moments):
             self.present.stretches.append(Stretch(step.time if step else 0.0, scene, [after]))
-        self.present.lost += int(page.head[0]["lost"])
-
-
-def _with_present_moment(page: Recording, state: State, world: int) -> Recording:
-    """Return a page with the moment now at its end: rules move balls and parts after the events of a step, too."""
-    clock = state.worlds[world]
-    moment = np.array([(clock["time_hi"], clock["time_lo"], len(page.ledger))], MOMENT)
-    now = [moment, *(None if array is None else array[world : world + 1] for array in going_on(state))]
-    kept: list[Any] = [
-        None if array is None else np.concatenate([array, last]) for array, last in zip(page[2:], now, strict=True)
-    ]
-    return Recording(page.head, page.ledger, *kept)
+        if self.present is not None:
+            self.present.lost += int(page.head[0]["lost"])
 
 
 def _around_restarts(page: Recording, instant: float) -> tuple[Recording, Recording]:

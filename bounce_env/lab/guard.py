@@ -1,12 +1,12 @@
 """Who may talk to the lab: pages that this server itself has served, to the person who started it."""
 
+import ipaddress
 import secrets
 from collections.abc import MutableMapping
-from http.cookies import CookieError, SimpleCookie
 from typing import Any, TypeAlias
 from urllib.parse import parse_qs
 
-from starlette.datastructures import Headers
+from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse, RedirectResponse
 
 App: TypeAlias = Any  # of ASGI
@@ -32,14 +32,16 @@ class Guard:
 
     The Host must be one of `hosts`, with any port: a page that has made its own name point here is refused. The Origin,
     where there is one, and on a WebSocket always, must be that Host. And there must be the cookie, which only the first
-    address gives: http://HOST/?token=..., once.
+    address gives: http://HOST/?token=...
 
-    hosts: names that may stand in the Host header. name: of the cookie; two servers on one host need two.
+    hosts: names that may stand in the Host header. by_address: any IP address may, too; a page cannot make it its own.
+    name: of the cookie; two servers on one host need two.
     """
 
-    def __init__(self, app: App, hosts: tuple[str, ...], name: str) -> None:
+    def __init__(self, app: App, hosts: tuple[str, ...], name: str, *, by_address: bool = False) -> None:
         self._app = app
-        self._hosts = hosts
+        self._hosts = tuple(map(str.lower, hosts))
+        self._by_address = by_address
         self._cookie = name
         self.token = secrets.token_urlsafe(24)
         self._secret = secrets.token_urlsafe(24)
@@ -51,23 +53,21 @@ class Guard:
             return
         headers = Headers(scope=scope)
         reason = self._wrong_address(headers, needs_origin=scope["type"] == "websocket")
+        app = self._app
         if not reason and scope["type"] == "http" and self._has_token(scope):
-            response = RedirectResponse(scope["path"], status_code=303, headers=HEADERS)
-            response.set_cookie(self._cookie, self._secret, httponly=True, samesite="strict", path="/")
-            await response(scope, receive, send)
-            return
-        reason = reason or self._without_cookie(headers)
-        if not reason:
-            await self._app(scope, receive, send)
-        elif scope["type"] == "websocket":
-            await send({"type": "websocket.close", "code": _REFUSED, "reason": reason[:120]})
-        else:
-            refusal = PlainTextResponse(f"refused: {reason}\n", status_code=403, headers=HEADERS)
-            await refusal(scope, receive, send)
+            app = RedirectResponse("/" + scope["path"].lstrip("/"), status_code=303)  # //x would lead to another host
+            app.set_cookie(self._cookie, self._secret, httponly=True, samesite="strict", path="/")
+        elif reason := reason or self._without_cookie(headers):
+            if scope["type"] == "websocket":
+                await send({"type": "websocket.close", "code": _REFUSED, "reason": reason[:120]})
+                return
+            app = PlainTextResponse(f"refused: {reason}\n", status_code=403)
+        await app(scope, receive, _with_headers(send))
 
     def _wrong_address(self, headers: Headers, *, needs_origin: bool) -> str:
         host, origin = headers.get("host", ""), headers.get("origin")
-        if _without_port(host) not in self._hosts:
+        name = _without_port(host)
+        if name.lower() not in self._hosts and not (self._by_address and _is_address(name)):
             return f"Host {host!r}: must be one of {', '.join(self._hosts)}"
         if origin is None and not needs_origin:
             return ""
@@ -80,14 +80,31 @@ class Guard:
         return secrets.compare_digest(given.encode(), self.token.encode())
 
     def _without_cookie(self, headers: Headers) -> str:
-        try:
-            cookies = SimpleCookie(headers.get("cookie", ""))
-        except CookieError:
-            cookies = SimpleCookie()
-        given = cookies[self._cookie].value if self._cookie in cookies else ""
-        if secrets.compare_digest(given.encode(), self._secret.encode()):
-            return ""
+        # Other servers on this host set cookies, too, and not all of them as the standard has it.
+        for cookie in headers.get("cookie", "").split(";"):
+            name, _, given = cookie.strip().partition("=")
+            if name == self._cookie and secrets.compare_digest(given.encode(), self._secret.encode()):
+                return ""
         return "no cookie of this lab: open the address that it printed"
+
+
+def _with_headers(send: Any) -> Any:
+    """Return what sends an answer with the headers that all of them have."""
+
+    async def sending(message: MutableMapping[str, Any]) -> None:
+        if message["type"] == "http.response.start":
+            MutableHeaders(scope=message).update(HEADERS)
+        await send(message)
+
+    return sending
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name.strip("[]"))
+    except ValueError:
+        return False
+    return True
 
 
 def _without_port(host: str) -> str:

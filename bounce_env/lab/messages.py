@@ -15,7 +15,8 @@ Share = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Point = tuple[Number, Number]
 Seconds = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Index = Annotated[int, Field(ge=0, le=100_000)]
-FileName = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,60}$")]
+NAME = r"[A-Za-z0-9_-]{1,60}"
+FileName = Annotated[str, Field(pattern=f"^{NAME}$")]
 """Of a scene in the folder, without its ending: no folders, no dots."""
 
 _Message = TypeVar("_Message")

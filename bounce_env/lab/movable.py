@@ -8,6 +8,7 @@ from operator import is_
 from typing import TypeAlias
 
 from bounce_env.scene import Element, Scene, Wall
+from bounce_env.scene.fields import LARGEST
 
 Corners: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
@@ -24,9 +25,9 @@ _SHORTEST = 1e-2
 
 
 def size_of(scene: Scene) -> float:
-    """Return the longer side of the box around a scene [m]."""
+    """Return the longer side of the box around a scene [m]; 1 for one without elements and a ball without a radius."""
     left, bottom, right, top = scene.bounds
-    return max(right - left, top - bottom, scene.ball.radius)
+    return max(right - left, top - bottom, scene.ball.radius) or 1.0
 
 
 def is_draggable(element: Element) -> bool:
@@ -46,7 +47,7 @@ def movable(scene: Scene, names: Sequence[str], revision: int = 0) -> Scene:
         replace(_draggable(element, reach, size), name=_name(element, name, revision))
         for element, name in zip(scene.elements, names, strict=True)
     )
-    return replace(scene, elements=elements, max_speed=scene.max_speed or FASTEST * size)
+    return replace(scene, elements=elements, max_speed=scene.max_speed or min(FASTEST * size, LARGEST))
 
 
 def _name(element: Element, name: str, revision: int) -> str:

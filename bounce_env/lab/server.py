@@ -1,11 +1,9 @@
 """The lab's server: a few files, and a WebSocket for each tab."""
 
 import asyncio
-import json
 import socket
-import sys
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -16,13 +14,15 @@ from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route, WebSocketRoute
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
-from bounce_env.lab.guard import HEADERS, LOCAL, Guard
+from bounce_env.lab.guard import LOCAL, Guard
 from bounce_env.lab.ready import Ready, at_once
 from bounce_env.lab.rooms import ROOMS, Room
+from bounce_env.lab.session import Session
 
 MOST_SESSIONS = 8
+THREADS = 64
 LARGEST_MESSAGE = 1_000_000  # bytes
 
 BUSY = 1013  # WebSocket's code: try again later
@@ -65,9 +65,13 @@ class Server:
         ]
         family = socket.AF_INET6 if host.startswith("[") else socket.AF_INET
         self._socket = socket.create_server((host.strip("[]"), port), family=family)
-        self._host, self.port = host, self._socket.getsockname()[1]
-        hosts = LOCAL if host in LOCAL else (*LOCAL, host)
-        self._guard = Guard(Starlette(routes=routes), hosts, f"bounce_lab_{self.port}")
+        self.port = self._socket.getsockname()[1]
+        everywhere = host in ("0.0.0.0", "[::]")  # then the address that people use is another one
+        self._host = socket.gethostname() if everywhere else host
+        hosts = LOCAL if host in LOCAL else (*LOCAL, host, self._host, socket.getfqdn())
+        self._guard = Guard(Starlette(routes=routes), hosts, f"bounce_lab_{self.port}", by_address=everywhere)
+        # Threads that wait for kernels block no tab that does not.
+        self._threads = ThreadPoolExecutor(THREADS)
         # No pings: while a kernel is compiled nothing answers them.
         config = uvicorn.Config(
             self._guard, ws="websockets-sansio", ws_max_size=LARGEST_MESSAGE, ws_ping_interval=None, lifespan="off",
@@ -82,6 +86,7 @@ class Server:
     def run(self) -> None:
         """Serve until Ctrl-C, or `stop`."""
         self._uvicorn.run(sockets=[self._socket])
+        self._threads.shutdown(wait=False, cancel_futures=True)
 
     def stop(self) -> None:
         """End all sessions, and `run`; may be called from another thread."""
@@ -95,7 +100,7 @@ class Server:
     @staticmethod
     def _file(file: Traversable) -> Callable[[Request], Any]:
         async def answer(request: Request) -> Response:
-            return Response(file.read_bytes(), headers=HEADERS, media_type=_TYPES[Path(file.name).suffix])
+            return Response(file.read_bytes(), media_type=_TYPES[Path(file.name).suffix])
 
         return answer
 
@@ -106,33 +111,12 @@ class Server:
                 await tab.close(BUSY, f"{MOST_SESSIONS} tabs are open, and no more may be: close one")
                 return
             self._sessions += 1
-            mine = room(**self._given)
+            session = Session(tab, room(**self._given), self._threads)
             try:
-                await _serve(tab, mine)
-            except (WebSocketDisconnect, asyncio.CancelledError):
-                pass  # the tab was closed, or the lab ends
+                await session.serve()
+            except asyncio.CancelledError:
+                pass  # the lab ends
             finally:
                 self._sessions -= 1
-                with suppress(ValueError):  # nobody is there to be told
-                    mine.close()
 
         return talk
-
-
-async def _serve(tab: WebSocket, room: Room) -> None:
-    """Answer each message of a tab, one after the other; what takes long is done in a thread."""
-    while True:
-        text = await tab.receive_text()
-        answer = await asyncio.to_thread(answered, room, text)
-        await tab.send_text(json.dumps(answer, separators=(",", ":"), allow_nan=False))
-
-
-def answered(room: Room, text: str) -> Mapping[str, Any]:
-    """Return a room's answer to a message; what is wrong with a message is an answer, too."""
-    try:
-        return room.answer(text)
-    except ValueError as error:
-        return {"error": str(error)}
-    except Exception as error:  # the tab is told, and goes on; the person at the terminal sees where it comes from
-        sys.excepthook(type(error), error, error.__traceback__)
-        return {"error": f"the lab has failed: {type(error).__name__}: {error}"}

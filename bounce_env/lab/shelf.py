@@ -1,8 +1,10 @@
 """The scenes in the folder with which the lab was started: there it reads and writes, and nowhere else."""
 
+import re
 from pathlib import Path
 
 from bounce_env.files import replacing
+from bounce_env.lab.messages import NAME
 from bounce_env.scene import Scene, dump_scene, load_scene
 
 
@@ -13,8 +15,12 @@ class Shelf:
         self.folder = folder
 
     def names(self) -> list[str]:
-        """Return what is there, sorted."""
-        return sorted(path.stem for path in self.folder.glob("*.toml"))
+        """Return what can be loaded, sorted."""
+        return sorted(
+            path.stem
+            for path in self.folder.glob("*.toml")
+            if re.fullmatch(NAME, path.stem) and path.is_file() and not path.is_symlink()
+        )
 
     def load(self, name: str) -> Scene:
         """Return a scene; raises SceneError, a ValueError, where there is none or it is wrong."""

@@ -139,6 +139,7 @@ class Stage:
         self._shelf = Shelf(folder)
         self._first = scene
         self._table: Table | None = None
+        self._ghost_on = False
         self._ghost: Ghost | None = None
         self._ghost_words = ""
         self._parts: dict[int, list[float]] = {}  # where the tab knows them to be
@@ -199,7 +200,7 @@ class Stage:
 
     @_do.register
     def _(self, message: Remember) -> None:
-        self.table.remember(self.table.scene)
+        self.table.remember(self.table.kept())
 
     @_do.register
     def _(self, message: PlaceEnd) -> None:
@@ -220,12 +221,12 @@ class Stage:
     @_do.register
     def _(self, message: Undo) -> None:
         self.table.undo()
+        self._ghost_anew()
 
     @_do.register
     def _(self, message: UseGhost) -> None:
-        self._ghost, self._ghost_words = None, ""
-        if message.on:
-            self._begin_ghost()
+        self._ghost_on = message.on
+        self._ghost_anew()
 
     @_do.register
     def _(self, message: Load) -> dict[str, Any]:
@@ -244,7 +245,7 @@ class Stage:
 
     def _changed(self, change: Any) -> dict[str, Any]:
         """Make a change that can be undone; returns what else had to change."""
-        before = self.table.scene
+        before = self.table.kept()
         notice = change(self.table)
         self.table.remember(before)
         self._ghost_anew()
@@ -270,17 +271,16 @@ class Stage:
     def _complete(self) -> list[str]:
         return [env_id for env_id, need in needs_of(self.table.scene).items() if not need]
 
-    def _begin_ghost(self) -> None:
+    def _ghost_anew(self) -> None:
+        """Let the stepper begin anew from where the ball is, if it is to run at all."""
+        self._ghost, self._ghost_words = None, ""
+        if not self._ghost_on:
+            return
         (position,), (velocity,) = self.table.world.position.tolist(), self.table.world.velocity.tolist()
         try:
             self._ghost = Ghost(self.table.scene, tuple(position), tuple(velocity))
         except ValueError as error:
             self._ghost_words = str(error)
-
-    def _ghost_anew(self) -> None:
-        if self._ghost is not None:
-            self._ghost = None
-            self._begin_ghost()
 
     def _advance_ghost(self, seconds: float) -> None:
         if self._ghost is None:

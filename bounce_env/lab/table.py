@@ -3,11 +3,12 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bounce_env.engine import EventKind, Status, World
+from bounce_env.lab.messages import LARGEST
 from bounce_env.lab.movable import drag_speed, is_draggable, movable, size_of, with_walls_at, without_revision
 from bounce_env.lab.parts import parts_of
 from bounce_env.lab.ready import Ready, at_once, wanted_for
@@ -23,6 +24,13 @@ LIMIT_OF_SPEED = 100.0
 _CLEAR = 1.0 + 1e-9
 
 
+class Kept(NamedTuple):
+    """A scene, and the names of its elements in the world, by which parts keep their places."""
+
+    scene: Scene
+    names: list[str]
+
+
 class Table:
     """A scene under a ball that runs. What cannot be changed raises ValueError, and the table is then as before.
 
@@ -31,7 +39,7 @@ class Table:
 
     def __init__(self, scene: Scene, ready: Ready = at_once) -> None:
         self._ready = ready
-        self.undo_steps: list[Scene] = []
+        self.undo_steps: list[Kept] = []
         self.revision = 0
         self._dragged: int | None = None
         self._begin(scene)
@@ -101,18 +109,19 @@ class Table:
         else:
             raise ValueError(f"elements[{index}]: must be a flipper or a paddle to be pressed")
 
-    def remember(self, scene: Scene) -> None:
+    def kept(self) -> Kept:
+        """Return the scene as it is now, for `remember`."""
+        return Kept(self.scene, self._names)
+
+    def remember(self, kept: Kept) -> None:
         """Let `undo` lead back to a scene that there was."""
-        self.undo_steps = [*self.undo_steps[-MOST_UNDONE + 1 :], scene]
+        self.undo_steps = [*self.undo_steps[-MOST_UNDONE + 1 :], kept]
 
     def undo(self) -> None:
         """Go back to the scene before the last change; the ball goes on."""
         if not self.undo_steps:
             raise ValueError("nothing to undo")
-        scene = self.undo_steps[-1]
-        names = self._names[: len(scene.elements)]
-        names += [f"#{self._next + i}" for i in range(len(scene.elements) - len(names))]
-        self._go_on(scene, names)
+        self._go_on(*self.undo_steps[-1])
         self.undo_steps.pop()
 
     def set_field(self, index: int | None, field: str, value: Any) -> str:
@@ -237,7 +246,7 @@ def _needs_limit(data: Mapping[str, Any]) -> bool:
     """Return whether bounces in a scene may add energy; what is not a number is refused elsewhere."""
 
     def number(value: object, otherwise: float) -> float:
-        return value if isinstance(value, int | float) else otherwise
+        return value if isinstance(value, int | float) and abs(value) <= LARGEST else otherwise
 
     ball = number(data.get("ball", {}).get("b"), 1.0)
     return any(

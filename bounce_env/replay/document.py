@@ -35,6 +35,8 @@ def document_of(
     """
     left, bottom, right, top = run.scene.bounds
     size = max(right - left, top - bottom, run.scene.ball.radius)
+    if size == 0.0:  # nothing but a point, of which a page shows the surroundings
+        left, bottom, right, top, size = -1.0, -1.0, 1.0, 1.0, 2.0
     timed = {
         "balls": [list(_ball(paths, run.end, size)) for paths in run.balls],
         "parts": [

@@ -79,7 +79,7 @@ function drawElement(target, element) {
   if (element.type === "field") {
     target.fillStyle = COLOURS.field;
     target.beginPath();
-    element.corners.forEach(([x, y]) => target.lineTo(x, y));
+    element.points.forEach(([x, y]) => target.lineTo(x, y));
     target.fill();
   } else if (element.type === "arc") {
     target.beginPath();

@@ -132,7 +132,8 @@ canvas.addEventListener("keydown", (event) => {
 canvas.addEventListener("pointermove", (event) => { pointer = placeOf(view, canvas, event); tell(); });
 canvas.addEventListener("pointerleave", () => { pointer = null; tell(); });
 window.addEventListener("resize", resize);
-const { id, seed } = replay.about;
-find("title").textContent = id ? `${id}${seed === null || seed === undefined ? "" : `, seed ${seed}`}` : "World";
+const { id, seed, episode } = replay.about;
+const which = seed === null || seed === undefined ? "" : `, seed ${seed}${episode > 1 ? `, episode ${episode} of it` : ""}`;
+find("title").textContent = id ? `${id}${which}` : "World";
 resize();
 go(Number(location.hash.slice(1)) || 0); // page.html#12.5 begins there

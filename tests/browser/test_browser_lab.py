@@ -126,6 +126,10 @@ def test_a_scene_is_built_saved_and_loaded_and_says_what_games_need(browser, lab
         assert saved.elements[13].radius == 0.1
         page.click("#save")
         page.wait_for_selector("#notice.error:has-text('mine.toml is there already')")
+        for k, option in enumerate(page.locator("#palette option").all()):
+            page.select_option("#palette select", option.get_attribute("value"))
+            page.click("#palette button")
+            page.wait_for_selector(f"#elements option:nth-child({15 + k})", state="attached")
         page.select_option("#scenes", "builtin:pinball")
         page.click("#load")
         page.wait_for_selector("#needs li:has-text('Bounce/Pinball-v0: complete')")

@@ -117,7 +117,7 @@ def test_what_was_not_recorded_has_no_replay():
     with pytest.raises(RuntimeError, match="record_events=True"):
         env.replay()
     env.record()
-    with pytest.raises(RuntimeError, match="reset"):
+    with pytest.raises(RuntimeError, match="nothing is recorded of this episode"):
         env.replay()
     env.reset()
     env.step(env.action_space.sample())
@@ -125,3 +125,70 @@ def test_what_was_not_recorded_has_no_replay():
     assert "<script" in page
     with pytest.raises(ValueError, match="record_events = 1: must be True or False"):
         gym.make("Bounce/Paddle-v0", record_events=1)
+
+
+def times_of(document):
+    return [document["instants"][path[0]] for path in document["balls"][0]]
+
+
+def test_episodes_that_are_seeded_anew_are_told_apart():
+    env = gym.make("Bounce/Walls-v0", record_events=True, disable_env_checker=True).unwrapped
+    fresh = gym.make("Bounce/Walls-v0", record_events=True, disable_env_checker=True).unwrapped
+    env.action_space.seed(1)
+    actions = [env.action_space.sample() for _ in range(12)]
+    for seed, steps in ((0, 12), (7, 5), (7, 5)):
+        env.reset(seed=seed)
+        for action in actions[:steps]:
+            env.step(action)
+    fresh.reset(seed=7)
+    for action in actions[:5]:
+        fresh.step(action)
+    assert env.replay().document == fresh.replay().document
+    assert env.replay(last=True).document == fresh.replay().document
+    assert times_of(env.replay().document) == sorted(times_of(env.replay().document))
+
+
+def test_a_replay_says_where_its_episode_comes_from():
+    env = gym.make("Bounce/Paddle-v0", record_events=True, disable_env_checker=True).unwrapped
+    env.reset(seed=5)
+    other = env.clone_state()
+    env.reset()
+    about = [env.replay(last=last).document["about"] for last in (True, False)]
+    assert [(each["seed"], each["episode"]) for each in about] == [(5, 1), (5, 2)]
+    env.reset(seed=6)
+    env.restore_state(other)
+    with pytest.raises(RuntimeError, match="or a state was restored"):
+        env.replay()
+    assert env.replay(last=True).document["about"]["seed"] == 6  # what was left by restoring
+    env.reset()
+    assert env.replay().document["about"]["seed"] is None
+    envs = gym.make_vec("Bounce/Paddle-v0", num_envs=3, vectorization_mode="vector_entry_point").unwrapped
+    envs.record(2)
+    envs.reset(seed=5)
+    assert envs.replay().document["about"]["seed"] == 7
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
+def test_recording_begins_with_an_episode_that_begins_in_a_step(mode):
+    envs = gym.make_vec(
+        "Bounce/Paddle-v0", num_envs=2, vectorization_mode="vector_entry_point", autoreset_mode=mode, time_limit=0.2
+    ).unwrapped
+    actions = np.zeros(envs.action_space.shape, envs.action_space.dtype)
+    envs.reset(seed=0)
+    envs.step(actions)
+    envs.record(1)
+    for _ in range(5):
+        with pytest.raises(RuntimeError, match="nothing is recorded of this episode"):
+            envs.replay()
+        envs.step(actions)
+    for _ in range(4):
+        envs.step(actions)
+    assert times_of(envs.replay().document)[0] == 0.0
+    envs.record(1)  # once more changes nothing
+    assert envs.replay().document["end"] > 0.0
+    envs.restore_state(envs.clone_state())
+    for _ in range(14):
+        envs.step(actions)
+    assert times_of(envs.replay().document)[0] == 0.0
+    with pytest.raises(ValueError, match="on = 'no': must be True or False"):
+        gym.make("Bounce/Paddle-v0", disable_env_checker=True).unwrapped.record("no")

@@ -8,9 +8,9 @@ from bounce_env.lab.server import Server
 
 
 @contextmanager
-def serving(folder, scene=None):
+def serving(folder, **options):
     """Give a server that answers; it has ended when the test goes on."""
-    server = Server(folder=folder, scene=scene)
+    server = Server(folder=folder, **options)
     thread = threading.Thread(target=server.run)
     thread.start()
     deadline = time.monotonic() + 30.0

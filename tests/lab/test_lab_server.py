@@ -4,8 +4,10 @@ import http.client
 import json
 import re
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
 import tomllib
 from contextlib import ExitStack, closing
@@ -122,12 +124,61 @@ def test_a_foreign_origin_is_refused(server, origin):
     assert get(server, "/", Cookie=cookie, Origin=f"http://localhost:{server.port}")[0] == 200
 
 
+def test_other_cookies_of_this_host_hide_nothing(server):
+    cookie = cookie_of(server)
+    for others in ('foo={"a":1}; {}', "{}; a b=c", "word; {}", 'g_state={"i_l":0}; {}; x'):
+        assert get(server, "/", Cookie=others.replace("{}", cookie))[0] == 200
+
+
+def test_the_token_leads_nowhere_else_and_every_answer_has_the_headers(server):
+    token = urlsplit(server.address()).query
+    assert get(server, f"//evil.example/x?{token}")[1]["Location"] == "/evil.example/x"
+    cookie = cookie_of(server)
+    for path in ("/", "/nothing", "/stage/", "/stage.js"):
+        assert get(server, path, Cookie=cookie)[1]["Content-Security-Policy"] == POLICY
+    assert get(server, "/")[1]["Content-Security-Policy"] == POLICY
+
+
+def test_whoever_listens_everywhere_is_reached_by_name_and_address(tmp_path):
+    with serving(tmp_path, host="0.0.0.0") as server:
+        assert urlsplit(server.address()).hostname == socket.gethostname().lower()
+        cookie = cookie_of(server)
+        for host, status in (
+            (f"192.0.2.2:{server.port}", 200),
+            ("[2001:db8::1]:80", 200),
+            (socket.gethostname().upper(), 200),
+            ("evil.example", 403),
+        ):
+            assert get(server, "/", Host=host, Cookie=cookie)[0] == status
+
+
+def test_a_tab_that_waits_for_kernels_keeps_nobody_else_and_ends_when_it_is_closed(tmp_path):
+    free = threading.Event()
+    with serving(tmp_path, ready=lambda wanted: free.wait()) as server:
+        cookie = cookie_of(server)
+        for _ in range(MOST_SESSIONS + 4):
+            with talk(server, cookie, "stage") as tab:
+                tab.send('{"do": "open"}')
+                time.sleep(0.05)
+        assert answered_once(server, cookie)["dp1"] == 1.0
+        with talk(server, cookie, "stage") as tab:
+            tab.send('{"do": "open"}')
+            time.sleep(0.1)
+            began = time.monotonic()
+            server.stop()
+            with pytest.raises(ConnectionClosed):
+                tab.recv(timeout=20)
+            assert time.monotonic() - began < 10.0
+    free.set()
+
+
 def test_a_message_is_answered_and_a_malformed_one_told_its_place(server):
     with talk(server, cookie_of(server)) as tab:
         for message, words in (
             (json.dumps(REFLECT), None),
             (json.dumps({**REFLECT, "radius": -1}), "radius = -1"),
             ("{", "Invalid JSON"),
+            (b"\x00", "Invalid JSON"),
             ("[" * 100_000, "message"),
             (json.dumps(REFLECT) + " " * (LARGEST_MESSAGE // 2), None),
         ):

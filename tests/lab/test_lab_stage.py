@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from bounce_env import Ball, Scene, SceneError, Wall, load_scene
+from bounce_env import Ball, Flipper, Scene, SceneError, Wall, load_scene
 from bounce_env.engine.tutorial import run
 from bounce_env.lab.movable import size_of
 from bounce_env.lab.stage import Stage
@@ -108,6 +108,42 @@ def test_a_bounce_that_adds_speed_gets_a_limit_and_says_so(tmp_path):
     assert tab.scene["max_speed"] == 160.0
 
 
+def test_undo_leaves_parts_where_they_are(tmp_path):
+    def flipper(x):
+        return Flipper((x, 0), 0.2, radius=0.02, rest_angle=0, active_angle=1, up_speed=9, down_speed=9)
+
+    scene = Scene(elements=(Wall((0, -1), (1, -1)), flipper(0.2), flipper(0.6), Wall((0, 1), (1, 1))), max_speed=50)
+    (tmp_path / "two.toml").write_text(dump_scene(scene))
+    tab = Tab(tmp_path, str(tmp_path / "two.toml"))
+    tab.do("press", element=2, on=True)
+    tab.do("advance", seconds=0.5)
+    tab.do("remove", element=0)
+    assert (tab.ends(0), tab.ends(1)) == ([0.0], [pytest.approx(1.0)])
+    tab.do("undo")
+    assert (tab.ends(1), tab.ends(2)) == ([0.0], [pytest.approx(1.0)])
+
+
+def test_all_can_be_removed_and_anything_be_large(tmp_path):
+    tab = Tab(tmp_path)
+    tab.do("place_end", element=0, end=0, to=[-1e6, -1e6])
+    for _ in range(13):
+        view = tab.do("remove", element=0)
+    assert tab.scene["elements"] == []
+    tab.do("advance", seconds=0.1)
+    assert "error" not in tab.do("add", element={"type": "wall", "start": [0, 0], "end": [1, 0]})
+    with pytest.raises(ValueError, match=r"ball: b = 1000.*: must be"):
+        tab.do("set", element=None, field="ball.b", value=10**400)
+    assert view["undo"] == 13
+
+
+def test_the_ghost_follows_every_change(tmp_path):
+    tab = Tab(tmp_path)
+    tab.do("ghost", on=True)
+    assert "radius" in tab.do("set", element=None, field="ball.radius", value=0.02)["ghost"]["words"]
+    assert tab.do("undo")["ghost"]["error"] == 0.0
+    assert tab.do("ghost", on=False)["ghost"] is None
+
+
 @pytest.mark.parametrize(
     ("message", "words"),
     [
@@ -157,7 +193,11 @@ def test_scenes_are_saved_once_and_overwritten_only_when_asked(tmp_path):
     assert load_scene(path) == load_scene("tutorial")
     tab.do("save", name="mine", overwrite=True)
     assert load_scene(path).elements[4].b == 0.5
-    (tmp_path / "link.toml").symlink_to("/etc/passwd")
+    for name in ("link.toml", ".mine-unfinished.toml", ".play-unfinished.toml"):
+        (tmp_path / name).symlink_to(tmp_path.parent / "elsewhere.toml")
+    (tmp_path / "not a name.toml").write_text("")
+    assert tab.do("save", name="play")["files"] == ["mine", "play"]
+    assert not (tmp_path.parent / "elsewhere.toml").exists()
     for name in ("load", "save"):
         with pytest.raises(ValueError, match=r"link\.toml: is a link"):
             tab.do(name, name="link", **({"builtin": False} if name == "load" else {"overwrite": True}))

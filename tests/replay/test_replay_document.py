@@ -73,6 +73,19 @@ REFUSED = {
     "instants that go back": (changed(["instants", 3], 0.0), "run.json: instants: each must be greater"),
     "kind that is not there": (changed(["events", 0, 1], 99), r"run.json: events\[0\]\[1\] = 99: must be below"),
     "field that is not there": (changed(["changes", 0, 2], "x"), r"run.json: changes\[0\]\[2\] = 'x': must be a field"),
+    "true for a format": (changed(["format"], True), "run.json: format = True"),
+    "a number that JSON lacks": (changed(["about", "x"], float("inf")), "Infinity is no number of JSON"),
+    "a scene that is none": (changed(["scene"], "x"), "run.json: scene: is not TOML"),
+    "another scene": (changed(["scene"], ""), "run.json: elements: must be those of the scene, 0"),
+    "an arc without a radius": (changed(["elements", 0, "radius"], None), r"elements\[0\]: lacks \['radius'\]"),
+    "an end that is none": (changed(["elements", 1, "start"], "x"), r"elements\[1\].start = 'x': must be that of"),
+    "a box without a size": (changed(["bounds"], [1.0, 0.0, 0.0, 0.0]), "run.json: bounds = "),
+    "a box that is too large": (changed(["bounds"], [-1e308, 0, 1e308, 0]), r"run.json: bounds\[0\]"),
+    "a part with too few numbers": (changed(["parts", 0, "paths", 0, 1], [0.0]), r"parts\[0\].paths: each must have 4"),
+    "a switch that is none": (changed(["changes", 0, 3], 1), r"changes\[0\]\[3\] = 1: must be true or false"),
+    "a change that is none": (changed(["changes", 0, 2], "start"), r"changes\[0\].*start"),
+    "a series without a length": (changed(["balls", 0, -1, 1], 0), r"balls\[0\]\[\d+\]: must end after it begins"),
+    "more than there can be": (changed(["lost"], 10**400), "run.json: lost"),
     "not a number": (changed(["end"], float("nan")), "run.json: "),
 }
 
@@ -121,3 +134,27 @@ def test_a_world_has_a_replay_and_it_is_written_whole_or_not_at_all(tmp_path):
     with pytest.raises(OSError, match="none"):
         replay.save(tmp_path / "none" / "run.html")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["run.json"]
+
+
+def test_a_run_that_has_only_begun_and_one_that_goes_on_elsewhere():
+    world = World(Scene(ball=Ball(0.1), elements=(Wall((-1, 0), (1, 0), name="floor"),), gravity=(0, -1)))
+    world.record()
+    world.reset(position=(0, 1), velocity=(0, 0))
+    assert replay_of(world.recorded()).document["balls"] == [[[0, 0, 1, 0, 0, 0, -1]]]
+    world.advance(0.5)
+    kept = world.snapshot()
+    world.push((1.0, 0.0))
+    world.enable("floor", False)
+    run = world.recorded()
+    assert run.balls[0][-1][3:5] == tuple(world.velocity[0])
+    assert [change[1:] for change in run.changes] == [(0, "disabled", True)]
+    world.restore(kept)
+    with pytest.raises(RuntimeError, match="nothing is recorded"):
+        world.recorded()
+    nothing = World(Scene())
+    nothing.record()
+    nothing.reset(position=(0, 0), velocity=(1, 0))
+    nothing.advance(1.0)
+    document = replay_of(nothing.recorded()).document
+    assert document["bounds"] == [-1.0, -1.0, 1.0, 1.0]
+    assert read_document(replay_of(nothing.recorded()).json) == document

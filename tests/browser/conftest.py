@@ -6,6 +6,9 @@ from contextlib import contextmanager
 import pytest
 from playwright.sync_api import sync_playwright
 
+from bounce_env.lab.kernels import compile_wanted
+from bounce_env.lab.play import GAMES
+from bounce_env.lab.ready import DISC, POINT, Wanted
 from tests.conftest import require
 from tests.lab.serving import serving
 
@@ -40,8 +43,15 @@ def page_of(browser, **context):
     opened.close()
 
 
+@pytest.fixture(scope="session")
+def kernels():
+    """All that the lab needs, compiled: what a test waits for is then the page."""
+    for wanted in (POINT, DISC, *map(Wanted, GAMES.values())):
+        compile_wanted(wanted)
+
+
 @pytest.fixture(scope="module")
-def lab(browser, tmp_path_factory):
+def lab(browser, kernels, tmp_path_factory):
     """A lab, with a folder of its own."""
     folder = tmp_path_factory.mktemp("scenes")
     with serving(folder) as server:

@@ -142,6 +142,9 @@ class World:
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
         hi, lo = world_begin_call(self._bound, seconds)
+        if not ledger and self._recorded is None:
+            world_advance_to(self._bound, hi, lo, max_events, ANY_BOUNCES)
+            return None
         pages = self._advance_to(hi, lo, max_events, keeps=ledger)
         return np.concatenate([page.ledger for page in pages]) if ledger else None
 

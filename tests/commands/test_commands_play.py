@@ -44,7 +44,7 @@ def test_any_key_starts_a_play(monkeypatch):
 
 @pytest.mark.parametrize("env_type", [PaddleEnv, PinballEnv, WallsEnv])
 def test_every_keyword_of_a_game_is_an_option(env_type):
-    assert set(env_type.defaults()) - {"render_mode"} <= {field.name for field in fields(Play)}
+    assert set(env_type.defaults()) - {"render_mode", "record_events"} <= {field.name for field in fields(Play)}
 
 
 def test_keywords_reach_the_game(monkeypatch):

@@ -29,6 +29,7 @@ COMMON = {
     "time_limit": (30.0, 5.0, None),
     "obs": ("state", "pixels"),
     "render_mode": (None, "rgb_array", "human"),
+    "record_events": (False, True),
     "width": (None, 60),
     "height": (None, 90),
     "obs_width": (None, 40),

@@ -58,7 +58,6 @@ class Table:
         except ValueError as error:
             raise ValueError(without_revision(str(error))) from error
         self._scene, self.world, self._names, self._next = scene, world, names, len(names)
-        self.launch_at = (position, velocity)
         self.revision += 1
 
     @property

@@ -47,7 +47,7 @@ def test_a_game_is_played_to_its_end_begun_anew_and_saved(browser, lab):
         assert load_replay(lab.folder / "played.html").document["about"]["id"] == "Bounce/Paddle-v0"
         page.locator("#canvas").focus()
         page.keyboard.press("r")
-        page.wait_for_function("document.querySelector('#words').textContent === ''")
+        page.wait_for_selector("#words:empty", state="attached")
 
 
 def test_pinball_pauses_and_fingers_press_flippers(browser, lab):

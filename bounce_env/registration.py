@@ -19,6 +19,16 @@ class Entry:
     vector_entry_point: str
     kwargs: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def short_name(self) -> str:
+        """paddle of Bounce/Paddle-v0."""
+        return short_name(self.id)
+
+
+def short_name(env_id: str) -> str:
+    """Return how people call a game: paddle, for Bounce/Paddle-v0."""
+    return env_id.removeprefix("Bounce/").rsplit("-v", 1)[0].lower()
+
 
 ENTRIES = (
     Entry(
@@ -37,6 +47,11 @@ ENTRIES = (
         vector_entry_point="bounce_env.envs.walls:WallsVectorEnv",
     ),
 )
+
+
+def games() -> dict[str, str]:
+    """Return the ids of the games by their short names; of several versions the last in the table."""
+    return {entry.short_name: entry.id for entry in ENTRIES}
 
 
 def register_all() -> None:

@@ -7,13 +7,12 @@ from functools import partial
 from tqdm import tqdm
 
 from bounce_env.commands.cli import FINE, Refused, say
-from bounce_env.commands.games import game_id, short_name
 from bounce_env.engine import World, WorldBatch
 from bounce_env.engine.compile.cache import cache_folder
 from bounce_env.engine.world_kernels import world_advance_to
 from bounce_env.lab.kernels import compile_game, compile_world
 from bounce_env.lab.table import free_place
-from bounce_env.registration import ENTRIES
+from bounce_env.registration import ENTRIES, games
 from bounce_env.scene import Scene, SceneError, load_scene
 
 QUICK = 3.0
@@ -40,14 +39,14 @@ def compile_kernels(names: tuple[str, ...]) -> int:
 def _jobs(name: str) -> list[tuple[str, Callable[[], None]]]:
     """Return what a name stands for: all, a game or a scene, each with what compiles it."""
     if name == "all":
-        games = [(entry.id, partial(compile_game, entry.id, "")) for entry in ENTRIES]
+        played = [(entry.id, partial(compile_game, entry.id, "")) for entry in ENTRIES]
         worlds = [
             ("worlds with a disc", partial(compile_world, 0.05)),
             ("worlds with a point", partial(compile_world, 0.0)),
         ]
-        return [*games, *worlds]
-    if name in [*(entry.id for entry in ENTRIES), *(short_name(entry.id) for entry in ENTRIES)]:
-        env_id = game_id(name)
+        return [*played, *worlds]
+    env_id = games().get(name, name)
+    if env_id in games().values():
         return [(env_id, partial(compile_game, env_id, ""))]
     try:
         return [(name, partial(_compile_scene, load_scene(name)))]

@@ -7,7 +7,7 @@ from typing import Any
 import gymnasium as gym
 
 from bounce_env.commands.cli import Refused, check_range
-from bounce_env.registration import ENTRIES
+from bounce_env.registration import ENTRIES, games, short_name
 from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.render.window import display_problem
 from bounce_env.window.film import Film
@@ -22,16 +22,10 @@ def game_id(name: str) -> str:
 
     Raises Refused for any other name.
     """
-    ids = {entry.id: entry.id for entry in ENTRIES}
-    names = {short_name(env_id): env_id for env_id in ids} | ids
+    names = games() | {entry.id: entry.id for entry in ENTRIES}
     if name not in names:
         raise Refused(f"game {name!r}: must be one of {', '.join(names)}{nearest(name, names)}")
     return names[name]
-
-
-def short_name(env_id: str) -> str:
-    """paddle for Bounce/Paddle-v0."""
-    return env_id.removeprefix("Bounce/").rsplit("-v", 1)[0].lower()
 
 
 def made(env_id: str, kwargs: dict[str, Any]) -> gym.Env[Any, Any]:

@@ -12,9 +12,11 @@ from bounce_env.engine.memory.records import CARRIED_ALONG, MOMENT, ON_CURVE, OU
 from bounce_env.engine.memory.state import Recording, State, going_on
 from bounce_env.engine.motion.carried import Carried, carried_after
 from bounce_env.engine.motion.curve_slide import CurveSlide, curve_slide_after
+from bounce_env.engine.motion.flight import Flight, flight_place_after
 from bounce_env.scene import Flipper, Scene, Wall
 
 _slide_after, _carried_after = from_python(curve_slide_after), from_python(carried_after)
+_place_after = from_python(flight_place_after)
 
 
 class BallPath(NamedTuple):
@@ -43,7 +45,7 @@ class BallPath(NamedTuple):
             return _slide_after(self.bent, t)[:2]
         if self.bent is not None:
             return _carried_after(self.bent, t)[:2]
-        return self.x + (self.vx + 0.5 * self.ax * t) * t, self.y + (self.vy + 0.5 * self.ay * t) * t
+        return _place_after(Flight(self.x, self.y, self.vx, self.vy, self.ax, self.ay), t)
 
 
 class PartPath(NamedTuple):

@@ -16,12 +16,11 @@ from bounce_env.engine.arguments import (
     commanded_velocities,
     pushed,
 )
+from bounce_env.engine.carried_over import carry_over
 from bounce_env.engine.compile.binding import bind
-from bounce_env.engine.compile.jit import from_python
 from bounce_env.engine.events.loop import ANY_BOUNCES, PAGE_FULL
 from bounce_env.engine.memory.records import NO_WORLD, OUT, Counts
 from bounce_env.engine.memory.state import Recording, State, taken, with_recording
-from bounce_env.engine.motion.parts import part_offset_at
 from bounce_env.engine.motion.readout import view
 from bounce_env.engine.packing import features_of_worlds, forced_features, pack, switch_round_ends
 from bounce_env.engine.placement import Core, part_cores_at_start, place_clear, separate_placed_balls
@@ -38,13 +37,12 @@ from bounce_env.engine.world_kernels import (
     world_resolve_all,
     world_resume_part,
 )
-from bounce_env.scene import Feature, Field, Scene, Sensor, Wall
+from bounce_env.scene import Feature, Field, Scene, Sensor
 from bounce_env.wording import nearest, numbers, real, shown, whole
 
 Floats = npt.NDArray[np.float64]
 
 _LEDGER_ROWS, _MOMENTS = 1024, 1024
-_offset_at = from_python(part_offset_at)
 
 
 class World:
@@ -234,11 +232,9 @@ class World:
         if scene.ball.radius != self.scene.ball.radius:
             raise ValueError(f"ball.radius = {scene.ball.radius!r}: must be {self.scene.ball.radius!r} as before")
         state = self._packed(scene)
-        old, new = self._state.worlds[0], state.worlds[0]
-        for name in ("time_hi", "time_lo", "bounces", "speed_capped", "events", "events_before", "drag_hi", "drag_lo"):
-            new[name] = old[name]
-        self._move_parts(scene, state)
-        balls, cores = self._now()[0], np.empty((len(scene.parts), 4))
+        balls, old_cores = self._now()
+        carry_over(self._state, self._parts, old_cores, state, scene.parts)
+        cores = np.empty((len(scene.parts), 4))
         bound = bind(state)
         view(bound, 0, np.empty((0, 4)), cores)
         if position is not None:
@@ -280,36 +276,6 @@ class World:
         if self._recorded is not None:
             self._recorded += pages
         return pages
-
-    def _move_parts(self, scene: Scene, state: State) -> None:
-        """Put the parts of a new scene, at rest, where those of the same name are, with their commands."""
-        if state.motions is None or state.parts is None:
-            return
-        known = {part.name: m for m, (_, part) in enumerate(self._parts) if part.name}
-        for m, (_, part) in enumerate(scene.parts):
-            motion, row = state.motions[0, m], state.parts[0, m]
-            motion.offset, motion.command = row.start, row.shuttle
-            motion.hi, motion.lo = state.worlds[0].time_hi, state.worlds[0].time_lo
-            before = known.get(part.name, -1)
-            if isinstance(part, Wall):
-                assert state.ends is not None
-                assert state.drag_limits is not None
-                self._move_wall(part, before, state.ends[0, m], state.drag_limits[0, m])
-            elif before >= 0 and type(self._parts[before][1]) is type(part):
-                assert self._state.motions is not None
-                was = self._state.motions[0, before]
-                motion.offset = min(max(_offset_at(was, motion.hi, motion.lo), 0.0), float(row.span))
-                motion.command = min(max(float(was.command), -float(row.down_speed)), float(row.up_speed))
-
-    def _move_wall(self, wall: Wall, before: int, ends: Any, limits: Any) -> None:
-        """Put the ends of a new scene's wall, at rest, where those of the same one are, with their commands."""
-        ends.x0, ends.y0, ends.x1, ends.y1 = limits.sx, limits.sy, limits.ex, limits.ey
-        was = self._parts[before][1] if before >= 0 else None
-        if isinstance(was, Wall) and (was.start, was.end, was.reach) == (wall.start, wall.end, wall.reach):
-            assert self._state.ends is not None
-            ends.x0, ends.y0, ends.x1, ends.y1 = self._now()[1][before]
-            for name in ("cx0", "cy0", "cx1", "cy1"):
-                ends[name] = self._state.ends[0, before][name]
 
     def snapshot(self) -> bytes:
         """Return the full state as bytes; `restore` goes on from it, bit for bit."""

@@ -111,10 +111,10 @@ def _around_restarts(page: Recording, instant: float) -> tuple[Recording, Record
     """
     (back,) = np.nonzero(np.diff(page.moments["hi"], prepend=instant) < 0.0)
     first, last = (int(back[0]), int(back[-1])) if len(back) else (len(page.moments),) * 2
-    return _moments(page, 0, first), _moments(page, last, len(page.moments))
+    return _part_of(page, 0, first), _part_of(page, last, len(page.moments))
 
 
-def _moments(page: Recording, first: int, last: int) -> Recording:
+def _part_of(page: Recording, first: int, last: int) -> Recording:
     """Return what a page holds of some of its moments, with the rows of the ledger that lead to them."""
     rows = [0, *page.moments["rows"].tolist()]
     kept: list[Any] = [None if array is None else array[first:last] for array in page[2:]]

@@ -14,6 +14,7 @@ import gymnasium as gym
 from bounce_env.lab.ready import DISC, POINT, Wanted
 from bounce_env.lab.table import Table
 from bounce_env.scene import Ball, Flipper, Scene, Wall
+from bounce_env.window.play import prepare
 
 
 class Kernels:
@@ -85,9 +86,7 @@ def compile_game(env_id: str, scene: str) -> None:
     import bounce_env  # noqa: F401, PLC0415 (registers the games)
 
     own: dict[str, Any] = {"scene": scene} if scene else {}
-    env = gym.make(env_id, disable_env_checker=True, record_events=True, **own)
-    env.reset(seed=0)
-    env.step(env.action_space.sample())
+    prepare(gym.make(env_id, disable_env_checker=True, **own))
 
 
 def compile_wanted(wanted: Wanted) -> None:

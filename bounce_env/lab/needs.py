@@ -2,16 +2,17 @@
 
 from typing import Any
 
-from bounce_env.envs import PaddleEnv, PinballEnv, WallsEnv
-from bounce_env.games.game import Game
-from bounce_env.scene import Scene
+from gymnasium.envs.registration import load_env_creator
 
-_GAMES = {"Bounce/Paddle-v0": PaddleEnv, "Bounce/Pinball-v0": PinballEnv, "Bounce/Walls-v0": WallsEnv}
+from bounce_env.games.game import Game
+from bounce_env.registration import ENTRIES
+from bounce_env.scene import Scene
 
 
 def needs_of(scene: Scene) -> dict[str, str]:
     """Return for each game what the scene lacks, in words; "" where it is complete."""
-    return {env_id: _need(env.game_type, scene) for env_id, env in _GAMES.items()}
+    envs: dict[str, Any] = {entry.id: load_env_creator(entry.entry_point) for entry in ENTRIES}
+    return {env_id: _need(env.game_type, scene) for env_id, env in envs.items()}
 
 
 def _need(game_type: type[Game], scene: Scene) -> str:
@@ -23,8 +24,9 @@ def _need(game_type: type[Game], scene: Scene) -> str:
     return ""
 
 
-def line_to_copy(path: str, complete: list[str]) -> str:
+def line_to_copy(path: str, scene: Scene) -> str:
     """Return the line of Python that plays a saved scene: as a game that it is complete for, else in a `World`."""
+    complete = [env_id for env_id, need in needs_of(scene).items() if not need]
     if complete:
         return f'gym.make("{complete[0]}", scene={path!r})'
     return f"World(load_scene({path!r}))"

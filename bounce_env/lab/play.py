@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 import gymnasium as gym
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from bounce_env.games.episode import FPS
 from bounce_env.lab.messages import FileName, Message, Point, read, reader
@@ -16,20 +16,27 @@ from bounce_env.lab.pointing import pointed
 from bounce_env.lab.ready import Ready, Wanted, at_once
 from bounce_env.lab.scores import HighScores, key_of
 from bounce_env.lab.shelf import Shelf
+from bounce_env.registration import games
 from bounce_env.scene import Scene, scene_to_dict
 from bounce_env.window.film import Film
 from bounce_env.window.keys import controls_for
 
-GAMES = {"paddle": "Bounce/Paddle-v0", "pinball": "Bounce/Pinball-v0", "walls": "Bounce/Walls-v0"}
+GAMES = games()
 FILM_HEIGHT = 720  # pixels
 MOST_FRAMES = 6  # of 1/60 s, that one message plays
+
+
+def _known(game: str) -> str:
+    if game not in GAMES:
+        raise ValueError(f"must be one of {', '.join(GAMES)}")
+    return game
 
 
 class Begin(Message):
     """Begin a game, in a scene of the folder or its own."""
 
     do: Literal["begin"]
-    game: Literal["paddle", "pinball", "walls"]
+    game: Annotated[str, AfterValidator(_known)]
     scene: FileName | None = None
 
 

@@ -240,8 +240,9 @@ class Stage:
 
     @_do.register
     def _(self, message: Save) -> dict[str, Any]:
-        path = self._shelf.save(message.name, self.table.scene, overwrite=message.overwrite)
-        return {**self._lists(), "notice": f"saved {path}", "line": line_to_copy(str(path), self._complete())}
+        scene = self.table.scene
+        path = self._shelf.save(message.name, scene, overwrite=message.overwrite)
+        return {**self._lists(), "notice": f"saved {path}", "line": line_to_copy(str(path), scene)}
 
     def _changed(self, change: Any) -> dict[str, Any]:
         """Make a change that can be undone; returns what else had to change."""
@@ -256,10 +257,8 @@ class Stage:
         parts: dict[int, list[float]] = dict(view["parts"])
         if self._told != self.table.revision:
             self._parts = {}
-            self._told = self.table.revision
-            view["scene"] = scene_to_dict(self.table.scene)
-            view["bounds"] = self.table.scene.bounds
-            view["needs"] = needs_of(self.table.scene)
+            self._told, scene = self.table.revision, self.table.scene
+            view |= {"scene": scene_to_dict(scene), "bounds": scene.bounds, "needs": needs_of(scene)}
         # Of two hundred walls hardly one moves: the tab knows where the others are.
         view["parts"] = [[index, numbers] for index, numbers in parts.items() if self._parts.get(index) != numbers]
         self._parts = parts
@@ -267,9 +266,6 @@ class Stage:
 
     def _lists(self) -> dict[str, Any]:
         return {"builtin": builtin_scenes(), "files": self._shelf.names()}
-
-    def _complete(self) -> list[str]:
-        return [env_id for env_id, need in needs_of(self.table.scene).items() if not need]
 
     def _ghost_anew(self) -> None:
         """Let the stepper begin anew from where the ball is, if it is to run at all."""

@@ -237,8 +237,15 @@ class Table:
 def event_of(row: Any) -> list[Any]:
     """Return a row of the ledger as [time, kind, element, x, y, speed before, speed after]."""
     before, after = math.hypot(row["vx0"], row["vy0"]), math.hypot(row["vx1"], row["vy1"])
-    kind = EventKind(int(row["kind"])).name.lower().replace("_", " ")
-    return [float(row["time"]), kind, int(row["element"]), float(row["x"]), float(row["y"]), before, after]
+    return [
+        float(row["time"]),
+        EventKind(int(row["kind"])).words,
+        int(row["element"]),
+        float(row["x"]),
+        float(row["y"]),
+        before,
+        after,
+    ]
 
 
 def _needs_limit(data: Mapping[str, Any]) -> bool:

@@ -56,7 +56,7 @@ def document_of(
         "ball_radius": run.scene.ball.radius,
         "elements": scene_to_dict(run.scene)["elements"],
         "end": round(run.end, _SECONDS),
-        "kinds": [kind.name.lower().replace("_", " ") for kind in EventKind],
+        "kinds": [kind.words for kind in EventKind],
         "lost": lost,
         "instants": _number_instants(timed),
         **timed,

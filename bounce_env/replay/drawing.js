@@ -55,10 +55,11 @@ export function disc(target, [x, y], radius, fill) {
   else target.stroke();
 }
 
-function colourOf(element) {
+/** Return the colour of an element that stands; ballB: of the ball, for a bounce adds speed where both b are more than 1. */
+export function colourOf(element, ballB = 1) {
   if (element.type === "sensor" && element.drain) return element.center ? COLOURS.mark : COLOURS.drain; // a target, or out
   if (element.type === "sensor") return COLOURS.sensor;
-  return element.b > 1 || element.kick > 0 ? COLOURS.lively : COLOURS.still;
+  return ballB * (element.b ?? 1) > 1 || element.kick > 0 ? COLOURS.lively : COLOURS.still;
 }
 
 /** Draw the elements that stand, on the ground. moving: the indices of the others. */

@@ -1,18 +1,18 @@
 """A real browser, driven by real mouse, touch and key events, and a lab that serves it."""
 
-import shutil
 from contextlib import contextmanager
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import sync_playwright
 
+from bounce_env.lab.benchmark import browser_path
 from bounce_env.lab.kernels import compile_wanted
 from bounce_env.lab.play import GAMES
 from bounce_env.lab.ready import DISC, POINT, Wanted
 from tests.conftest import require
 from tests.lab.serving import serving
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"]
 WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 400, "height": 800}
 
@@ -20,7 +20,7 @@ WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 400, "height": 800}
 @pytest.fixture(scope="module")
 def browser():
     """Chromium or Chrome, of the machine."""
-    path = next(filter(None, map(shutil.which, BROWSERS)), None)
+    path = browser_path()
     require("browser", path is not None, "Chromium or Chrome on the path")
     with sync_playwright() as playwright:
         running = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
@@ -57,3 +57,15 @@ def lab(browser, kernels, tmp_path_factory):
     with serving(folder) as server:
         server.folder = folder
         yield server
+
+
+def check_that_everyone_can_use(page):
+    """No serious problem that axe finds, and nothing is cut off at the page's width."""
+    found = Axe().run(page).response["violations"]
+    bad = [
+        (rule["id"], [node["target"] for node in rule["nodes"]])
+        for rule in found
+        if rule["impact"] in ("serious", "critical")
+    ]
+    assert bad == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= page.viewport_size["width"]

@@ -2,14 +2,14 @@
 
 import io
 import math
-import shutil
 import tempfile
 from pathlib import Path
 
 from PIL import Image
 from playwright.sync_api import sync_playwright
 
-from tests.browser.conftest import ARGUMENTS, BROWSERS
+from bounce_env.lab.benchmark import browser_path
+from tests.browser.conftest import ARGUMENTS
 from tests.lab.serving import serving
 
 FOLDER = Path(__file__).parents[2] / ".github"
@@ -20,7 +20,7 @@ COLOURS = 48
 
 def main() -> None:
     """Write the pictures into `.github`."""
-    path = next(filter(None, map(shutil.which, BROWSERS)))
+    path = browser_path()
     with tempfile.TemporaryDirectory() as folder, serving(Path(folder)) as server, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
         page = browser.new_page(viewport={"width": 1280, "height": 860})

@@ -3,10 +3,9 @@
 from pathlib import Path
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 
 from bounce_env import load_replay
-from tests.browser.conftest import NARROW, WIDE, page_of
+from tests.browser.conftest import NARROW, WIDE, check_that_everyone_can_use, page_of
 from tests.browser.shots import compare
 
 pytestmark = pytest.mark.slow
@@ -83,11 +82,4 @@ def test_everyone_can_use_it_and_nothing_is_cut_off(browser, address, scheme):
         # What looks for problems is run in the page, which its policy forbids.
         with page_of(browser, viewport=size, color_scheme=scheme, bypass_csp=True) as page:
             page.goto(address)
-            found = Axe().run(page).response["violations"]
-            bad = [
-                (rule["id"], [node["target"] for node in rule["nodes"]])
-                for rule in found
-                if rule["impact"] in ("serious", "critical")
-            ]
-            assert bad == []
-            assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
+            check_that_everyone_can_use(page)

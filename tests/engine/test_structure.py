@@ -27,6 +27,7 @@ FACE = {
     "packing",
     "placement",
     "recorded",
+    "carried_over",
     "snapshot",
     "tolerances",
     "tutorial",

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from bounce_env.engine.compile.jit import function, routine, where
+from bounce_env.engine.compile.jit import Table, function, routine
 from bounce_env.engine.memory.records import CROSSING, PART_STOPS
 from bounce_env.engine.memory.state import State
 
@@ -105,44 +105,22 @@ def keep_moment(state: State, w: int) -> None:
     i, world = head.moments, state.worlds[w]
     moment = recording.moments[i]
     moment.hi, moment.lo, moment.rows = world.time_hi, world.time_lo, head.rows
-    for k in range(state.balls.shape[1]):
-        recording.balls[i, k] = state.balls[w, k]
-    _keep_slides(state, w, i)
-    _keep_carried(state, w, i)
-    _keep_parts(state, w, i)
-    _keep_ends(state, w, i)
-    _keep_switches(state, w, i)
+    _copy_row(recording.balls, i, state.balls, w)
+    _copy_row(recording.curve_slides, i, state.curve_slides, w)
+    _copy_row(recording.carried, i, state.carried, w)
+    _copy_row(recording.motions, i, state.motions, w)
+    _copy_row(recording.ends, i, state.ends, w)
+    _copy_row(recording.disabled, i, state.disabled, w)
     head.moments += 1
 
 
-@where("curve_slides")
-def _keep_slides(state: State, w: int, i: int) -> None:
-    for k in range(state.balls.shape[1]):
-        state.recording.curve_slides[i, k] = state.curve_slides[w, k]
-
-
-@where("carried")
-def _keep_carried(state: State, w: int, i: int) -> None:
-    for k in range(state.balls.shape[1]):
-        state.recording.carried[i, k] = state.carried[w, k]
-
-
-@where("motions")
-def _keep_parts(state: State, w: int, i: int) -> None:
-    for m in range(state.motions.shape[1]):
-        state.recording.motions[i, m] = state.motions[w, m]
-
-
-@where("ends")
-def _keep_ends(state: State, w: int, i: int) -> None:
-    for m in range(state.ends.shape[1]):
-        state.recording.ends[i, m] = state.ends[w, m]
-
-
-@where("disabled")
-def _keep_switches(state: State, w: int, i: int) -> None:
-    for element in range(state.disabled.shape[1]):
-        state.recording.disabled[i, element] = state.disabled[w, element]
+@function
+def _copy_row(kept: Table, i: int, rows: Table, w: int) -> None:
+    """Copy row `w` to row `i` of `kept`, where there are any."""
+    if rows is None:
+        return
+    for j in range(rows.shape[1]):
+        kept[i, j] = rows[w, j]
 
 
 @function

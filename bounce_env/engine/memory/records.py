@@ -212,6 +212,11 @@ class EventKind(IntEnum):
     ABSORBED = 6  # as a bounce, of balls that lie on each other: too slow to rebound
     CORNER_BOUNCE = 7  # an element's share in a bounce from several of them at once
 
+    @property
+    def words(self) -> str:
+        """Return the kind as people read it: part stops."""
+        return self.name.lower().replace("_", " ")
+
 
 # As plain numbers, for kernels.
 OK, BUDGET, CRUSHED, OUT = map(int, Status)

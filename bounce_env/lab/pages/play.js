@@ -21,21 +21,9 @@ let [waits, paused, asking, last, owed] = [true, false, false, null, 0];
 let point = null; // { to, end } where a person points
 let trail = [];
 
-function notice(text, kind = "error") {
-  find("notice").textContent = text;
-  find("notice").className = text ? kind : "";
-}
-const send = connect("play", notice);
-let queue = Promise.resolve();
-function ask(message) {
-  queue = queue.then(() => send(message)).then(take, (error) => notice(error.message));
-  return queue;
-}
-
+const ask = connect("play", take);
 let best = null;
 function take(answer) {
-  if (answer.error) return void notice(answer.error);
-  notice(answer.notice || "", "good");
   if (answer.best !== undefined) best = answer.best;
   if (answer.controls) find("controls").textContent = `${answer.controls}. P: pause, R: new game, V: film. Mouse or finger: ${pointing()}.`;
   const jumped = !now || now.balls.length === 0;

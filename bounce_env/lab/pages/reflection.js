@@ -13,11 +13,10 @@ const UNIT = 100; // of the picture, to a metre
 const ends = { movement: [[-2.6, 2.2], [0.9, -1.6]], wall: [[-4.5, -1.6], [4.5, -0.6]] };
 let [answer, asking, again] = [null, false, false];
 
-function notice(text, kind = "error") {
-  find("notice").textContent = text;
-  find("notice").className = text ? kind : "";
-}
-const ask = connect("reflection", notice);
+const ask = connect("reflection", (found) => {
+  answer = found;
+  show();
+});
 
 async function update() {
   if (asking) return void (again = true);
@@ -25,12 +24,7 @@ async function update() {
   do {
     again = false;
     const values = Object.fromEntries(FIELDS.map((name) => [name, Number(find(name).value)]));
-    const found = await ask({ do: "reflect", ...ends, ...values });
-    notice(found.error || "");
-    if (!found.error) {
-      answer = found;
-      show();
-    }
+    await ask({ do: "reflect", ...ends, ...values });
   } while (again);
   asking = false;
 }

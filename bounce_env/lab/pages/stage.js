@@ -1,7 +1,7 @@
 // The tutorial's second example. The server plays the scene exactly; here it is drawn, dragged and asked on.
 "use strict";
 import { chartOf } from "./chart.js";
-import { drawBall, drawPart, drawStanding, fit, inMetres, COLOURS, disc, line, placeOf, viewOf } from "./drawing.js";
+import { colourOf, COLOURS, disc, drawBall, drawPart, drawStanding, fit, inMetres, line, placeOf, viewOf } from "./drawing.js";
 import { draggable } from "./handles.js";
 import { fillFields, fillPalette, fillScenes, SCENE_FIELDS } from "./panel.js";
 import { connect } from "./socket.js";
@@ -26,24 +26,11 @@ let aim = null; // { from, to } of a launch
 let launched = null; // [place, velocity]
 let trail = [];
 
-function notice(text, kind = "error") {
-  find("notice").textContent = text;
-  find("notice").className = text ? kind : "";
-}
-const send = connect("stage", notice);
+const ask = connect("stage", take);
 const size = () => Math.max(bounds[2] - bounds[0], bounds[3] - bounds[1]);
 
-/** Ask the server to do something, and show how things stand then; one question at a time. */
-let queue = Promise.resolve();
-function ask(message) {
-  queue = queue.then(() => send(message)).then(take, (error) => notice(error.message));
-  return queue;
-}
-
+/** Show how things stand after an answer. */
 function take(answer) {
-  if (answer.error) return void notice(answer.error);
-  if (message_is_old(answer)) notice("");
-  if (answer.notice) notice(answer.notice, "good");
   if (answer.line) find("line").textContent = answer.line;
   if (answer.builtin) fillScenes(find("scenes"), answer.builtin, answer.files);
   if (now && answer.time < now.time) [trail, launched] = [[], null];
@@ -70,11 +57,6 @@ function merged({ scene: anew, parts }) {
   if (anew || !now) return parts;
   const moved = new Map(parts);
   return now.parts.map(([index, numbers]) => [index, moved.get(index) ?? numbers]);
-}
-
-/** A notice of waiting, or of what is mended now, goes. */
-function message_is_old() {
-  return ["busy", "error"].includes(find("notice").className);
 }
 
 function resize() {
@@ -113,8 +95,7 @@ function draw() {
 }
 
 function drawWall(element, numbers, isSelected) {
-  const ball = scene.ball.b ?? 1;
-  context.strokeStyle = isSelected ? COLOURS.mark : element.kick > 0 || ball * (element.b ?? 1) > 1 ? COLOURS.lively : COLOURS.still;
+  context.strokeStyle = isSelected ? COLOURS.mark : colourOf(element, scene.ball.b);
   line(context, numbers.slice(0, 2), numbers.slice(2));
 }
 

@@ -8,10 +8,13 @@ export const COLOURS = {
 const SMALLEST_BALL = 2.5; // pixels
 const SPOTS = 40; // of a trail
 
-/** Return how a canvas of some width and at most some height [CSS pixels] shows a box [left, bottom, right, top]. */
+/**
+ * Return how a canvas of some width and at most some height [CSS pixels] shows a box [left, bottom, right, top].
+ * A page that is hidden, or not laid out yet, has no width: it is drawn on one pixel until it gets one.
+ */
 export function viewOf([left, bottom, right, top], margin, width, height) {
   const [wide, high] = [right - left + 2 * margin, Math.max(top - bottom, 0.3 * (right - left)) + 2 * margin];
-  const scale = Math.min(width / wide, height / high);
+  const scale = Math.min(Math.max(width, 1) / wide, Math.max(height, 1) / high);
   const ratio = window.devicePixelRatio || 1;
   return { width: wide * scale, height: high * scale, scale: scale * ratio, x: left - margin, y: bottom - margin, ratio };
 }
@@ -21,7 +24,7 @@ export function fit(view, ...canvases) {
   for (const canvas of canvases) {
     canvas.style.width = `${view.width}px`;
     canvas.style.height = `${view.height}px`;
-    [canvas.width, canvas.height] = [Math.round(view.width * view.ratio), Math.round(view.height * view.ratio)];
+    [canvas.width, canvas.height] = [view.width, view.height].map((side) => Math.max(1, Math.round(side * view.ratio)));
   }
 }
 

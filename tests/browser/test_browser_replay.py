@@ -76,6 +76,26 @@ def test_two_replays_in_a_notebook_do_not_meddle(browser, tmp_path):
         assert clock(other) == 0.0
 
 
+def test_a_replay_in_an_output_that_is_folded_is_there_when_it_is_opened(browser, tmp_path):
+    frame = load_replay(STORED)._repr_html_()
+    notebook = tmp_path / "notebook.html"
+    notebook.write_text(f"<!doctype html><meta charset=utf-8><title>Notebook</title><div hidden>{frame}</div>", encoding="utf-8")
+    with page_of(browser) as page:
+        page.goto(notebook.as_uri())
+        inside = page.frames[1]
+        inside.wait_for_selector("#events option", state="attached")
+        page.evaluate("document.querySelector('div').hidden = false")
+        # The canvas follows the frame's size, which it is told of a moment later.
+        inside.wait_for_selector("#scene:visible")
+        for _ in range(50):
+            if inside.locator("#scene").bounding_box()["width"] > 200.0:
+                break
+            page.wait_for_timeout(100)
+        assert inside.locator("#scene").bounding_box()["width"] > 200.0
+        inside.click("#forth")
+        assert clock(inside) > 0.0
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_everyone_can_use_it_and_nothing_is_cut_off(browser, address, scheme):
     for size in (WIDE, NARROW):

@@ -90,15 +90,14 @@ class BounceVecEnv(VecEnv):
         ended = self._envs.ended if dones.any() else None
         for w in np.flatnonzero(dones).tolist():
             self.reset_infos[w] = infos[w]
-            final = info["final_info"]
-            infos[w] = row_of(final, w)
+            infos[w] = row_of(info["final_info"], w) if "final_info" in info else {}
             infos[w]["terminal_observation"] = info["final_obs"][w]
             infos[w]["TimeLimit.truncated"] = bool(truncated[w] and not terminated[w])
             assert ended is not None
             infos[w]["episode"] = {
                 "r": round(float(ended["rewards"][w]), 6),  # as Monitor does
                 "l": int(ended["steps"][w]),
-                "t": infos[w]["game_seconds"],
+                "t": ended["seconds"].item(w),
             }
         return observations, rewards.astype(np.float32), dones, infos
 
@@ -136,8 +135,13 @@ class BounceVecEnv(VecEnv):
         return [None] * self.num_envs if frames is None else list(frames)
 
     def _rows(self, info: dict[str, Any]) -> list[dict[str, Any]]:
-        told = [name for name in ("score", "ball", "level") if name in info]
-        return [dict(zip(told, row, strict=True)) for row in zip(*(info[name].tolist() for name in told), strict=True)]
+        if "score" not in info:
+            return [{} for _ in range(self.num_envs)]
+        scores, balls = info["score"].tolist(), info["ball"].tolist()
+        if "level" not in info:
+            return [{"score": score, "ball": ball} for score, ball in zip(scores, balls, strict=True)]
+        rows = zip(scores, balls, info["level"].tolist(), strict=True)
+        return [{"score": score, "ball": ball, "level": level} for score, ball, level in rows]
 
     def _option_groups(self) -> list[dict[str, Any]]:
         """The options of `set_options` as the batch takes them, one dict for all worlds that have the same names."""

@@ -25,12 +25,16 @@ from bounce_env.engine.memory.records import (
 )
 from bounce_env.engine.memory.state import State, new_state
 from bounce_env.engine.motion.sincos import sin_cos as compiled_sin_cos
+from bounce_env.engine.tolerances import ZONE_MARGIN
 from bounce_env.scene import Arc, Bumper, Feature, Field, Flipper, Part, Scene, Sensor, Wall, moves
 from bounce_env.scene.features import checked_features
 
 sin_cos = from_python(compiled_sin_cos)
 Row = tuple[float, ...]
 Point = tuple[float, float]
+
+_NO_BOX = (0.0, 0.0, 0.0, 0.0)
+_ANGLE_MARGIN = 1e-9  # in a box an angle is taken to be reached that is missed by so little [rad, or turns]
 
 
 def pack(
@@ -166,7 +170,17 @@ def _standing_walls(scene: Scene) -> Iterable[tuple[int, Wall]]:
 
 
 def _pack_faces(scene: Scene) -> list[Row]:
-    return [(*w.start, *segment_direction(w.start, w.end), scene.ball.radius, i) for i, w in _standing_walls(scene)]
+    r = scene.ball.radius
+    return [
+        (*w.start, *segment_direction(w.start, w.end), r, *_box_around((w.start, w.end), r), i)
+        for i, w in _standing_walls(scene)
+    ]
+
+
+def _box_around(points: Iterable[Point], radius: float = 0.0) -> Row:
+    """Return a BOX around points, wider by a radius [m]."""
+    xs, ys = zip(*points, strict=True)
+    return min(xs) - radius, max(xs) + radius, min(ys) - radius, max(ys) + radius
 
 
 def _pack_one_way(scenes: Sequence[Scene]) -> Array:
@@ -229,13 +243,32 @@ def _pack_arcs(scene: Scene) -> list[Row]:
             span = MINOR if arc.end_angle - arc.start_angle <= math.pi else MAJOR
             reaches = (arc.radius + radius, max(arc.radius - radius, 0.0))
             span = CLOSED if arc.closed else span
-            rows.append((*arc.center, *reaches, cos_start, sin_start, cos_end, sin_end, span, i))
+            ends = (cos_start, sin_start), (cos_end, sin_end)
+            rows.append((*arc.center, *reaches, *ends[0], *ends[1], span, *_arc_box(arc, reaches, ends), i))
     return rows
+
+
+def _arc_box(arc: Arc, reaches: tuple[float, float], ends: tuple[Point, Point]) -> Row:
+    """Return the BOX of an arc: of its ends at both distances, and of where it is furthest along an axis."""
+    (x, y), (outer, inner) = arc.center, reaches
+    near = [(x + inner * c, y + inner * s) for c, s in ends]
+    far = [(x + outer * c, y + outer * s) for c, s in ends]
+    return _box_around([*near, *far, *_furthest_points(arc.center, outer, arc.start_angle, arc.end_angle)])
+
+
+def _furthest_points(center: Point, radius: float, low: float, high: float) -> Iterable[Point]:
+    """Return where a circle is furthest along an axis, of the angles [rad] from `low` to `high`."""
+    x, y = center
+    for quarter, (c, s) in enumerate(((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))):
+        angle = 0.5 * math.pi * quarter
+        turns = math.ceil((low - angle) / (2.0 * math.pi) - _ANGLE_MARGIN)
+        if angle + 2.0 * math.pi * turns <= high + _ANGLE_MARGIN:
+            yield x + radius * c, y + radius * s
 
 
 def _pack_sensors(scene: Scene) -> list[Row]:
     return [
-        (*e.segment[0], *segment_direction(*e.segment), int(e.drain), i)
+        (*e.segment[0], *segment_direction(*e.segment), *_box_around(e.segment), int(e.drain), i)
         for i, e in enumerate(scene.elements)
         if isinstance(e, Sensor) and e.segment is not None
     ]
@@ -274,19 +307,29 @@ def _pack_part(e: Part, ball_radius: float) -> Row:
     """Return a PART but for the index of its element."""
     if isinstance(e, Wall):
         ux, uy, length = segment_direction(e.start, e.end)
-        return (*e.start, ux, uy, 0.0, length, 0.0, ball_radius, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return (*e.start, ux, uy, 0.0, length, 0.0, ball_radius, 0.0, 0.0, 0.0, 0.0, 0.0, *_NO_BOX)
     thick = (e.radius, e.radius + ball_radius)
     if isinstance(e, Flipper):
         s, c = sin_cos(e.rest_angle)
         stroke = abs(e.active_angle - e.rest_angle)
-        return (*e.pivot, c, s, 0.0, e.length, *thick, stroke, 0.0, e.up_speed, e.down_speed, 0.0)
+        box = _flipper_box(e, thick[1])
+        return (*e.pivot, c, s, 0.0, e.length, *thick, stroke, 0.0, e.up_speed, e.down_speed, 0.0, *box)
     if isinstance(e, Bumper):
         assert e.rail_end is not None
         ux, uy, span = segment_direction(e.center, e.rail_end)
-        return (*e.center, ux, uy, 0.0, 0.0, *thick, span, 0.0, e.speed, e.speed, e.speed)
+        return (*e.center, ux, uy, 0.0, 0.0, *thick, span, 0.0, e.speed, e.speed, e.speed, *_NO_BOX)
     ux, uy, span = segment_direction(e.rail_start, e.rail_end)
     shape = (-e.half_width, e.half_width, *thick)
-    return (*e.rail_start, ux, uy, *shape, span, 0.5 * span, e.max_speed, e.max_speed, 0.0)
+    return (*e.rail_start, ux, uy, *shape, span, 0.5 * span, e.max_speed, e.max_speed, 0.0, *_NO_BOX)
+
+
+def _flipper_box(flipper: Flipper, offset_radius: float) -> Row:
+    """Return the zone of a flipper: a box around all places that it can be in, wider by some of its length."""
+    (x, y), length = flipper.pivot, flipper.length
+    low, high = sorted((flipper.rest_angle, flipper.active_angle))
+    ends = [(x + length * c, y + length * s) for s, c in map(sin_cos, (low, high))]
+    furthest = _furthest_points(flipper.pivot, length, low, high)
+    return _box_around([flipper.pivot, *ends, *furthest], offset_radius + ZONE_MARGIN * (length + offset_radius))
 
 
 def _pack_turns(scenes: Sequence[Scene]) -> Array:

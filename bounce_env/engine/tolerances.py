@@ -20,6 +20,13 @@ WEIGHTLESS = 1e-150
 # Within it the ball is moved to the surface: it is what is lost by writing a position down.
 START_OVERLAP = 1e-12  # (dimensionless, times metres)
 
+# Boxes around what is searched are wider by this share of the scene's extent and of the flight's way: 2^16 times the
+# rounding of both, and 16 times what a ball in a corner may be deep in a wall.
+BOX_MARGIN = 2.0**-32
+
+# The zone of a part is wider than its reach by this share: it keeps rounding of the border from hiding a hit.
+ZONE_MARGIN = 0.01
+
 # Bounded-acceleration advancement needs 3 to 10 steps; a search that has taken so many goes on as a polynomial.
 SEARCH_STEPS = 24
 

@@ -30,6 +30,9 @@ from bounce_env.wording import nearest, shown, whole
 
 Observation = npt.NDArray[np.float32] | npt.NDArray[np.uint8]
 
+_FIRST = np.zeros(1, np.intp)
+"""The index of the one world that there is."""
+
 
 def action_space(game: Game) -> spaces.Space[Any]:
     """Return what an agent does."""
@@ -195,11 +198,11 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
             self._batch.note_cut(0)
         if ended or cut:
             self._running = cut
-            info |= {key: plain(value[0]) for key, value in self._batch.end_info().items()}
+            info |= {key: plain(value[0]) for key, value in self._batch.end_info(_FIRST).items()}
         if self.render_mode == "human":
             self.render()
         r = self._batch.results
-        return self._observation(), float(r.rewards[0]), bool(r.terminated[0]), bool(r.truncated[0]), info
+        return self._observation(), r.rewards.item(0), r.terminated.item(0), r.truncated.item(0), info
 
     def render(self) -> npt.NDArray[np.uint8] | None:
         """Return the present frame (height, width, 3) in mode rgb_array; in mode human the same picture in a window."""
@@ -280,6 +283,9 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         return observation
 
     def _info(self) -> dict[str, Any]:
-        episode, levels = self._batch.episodes[0], self._batch.levels
-        info = {"score": float(episode.score), "ball": int(episode.ball)}
-        return info if levels is None else info | {"level": int(levels[0])}
+        # By column: attributes of a record would cost more than the step.
+        books = self._batch.episodes
+        info = {"score": books["score"].item(0), "ball": books["ball"].item(0)}
+        if self._batch.game.has_levels:
+            info["level"] = books["level"].item(0)
+        return info

@@ -85,7 +85,8 @@ class PinballEnv(BounceEnv):
     frame, pixels), `obs_width`, `obs_height` (of an observed one), `trail` (0.0; seconds of the ball's way, bounces
     included, that a frame shows, fading), `show_bounces` (False; whether `render` shows, after a step with bounces, the
     last of them in place of the step's end), `record_events` (False; whether `replay` has what happens). A vector env
-    also takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
+    also takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info`
+    ("all").
 
     Versions: v0, first release.
     """

@@ -20,6 +20,7 @@ from bounce_env.envs.base import (
     taken_snapshot,
     world_seed,
 )
+from bounce_env.envs.infos import checked_info, final_info, info_of_ends, info_of_worlds
 from bounce_env.envs.keywords import HasKeywords
 from bounce_env.envs.observations import Frames
 from bounce_env.envs.one_world import OneWorld
@@ -63,6 +64,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         "num_threads": 1,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
         "copy": True,
+        "info": "all",
         "render_mode": None,
     }
 
@@ -76,6 +78,7 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         mode = _autoreset_mode(own["autoreset_mode"])
         if not isinstance(own["copy"], bool):
             raise ValueError(f"copy = {shown(own['copy'])}: must be True or False")
+        self._told = checked_info(own["info"])
         self.render_mode = checked_render_mode(own["render_mode"], self.metadata["render_modes"])
         steps = _steps(own["max_episode_steps"])
         game, view, _ = self.sorted_out(keywords)
@@ -113,12 +116,12 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
             raise gym.error.ClosedEnvironmentError("reset: the environment has been closed")
         mask, snapshot, start = self.checked_reset(seed, options)
         if snapshot is not None:
-            return self.restore_state(snapshot, mask), self._info(mask)
+            return self.restore_state(snapshot, mask), self._reset_info(mask)
         self._seed_worlds(seed, mask)
         self._batch.reset(mask, start)
         self._frames.update(np.flatnonzero(mask).tolist())
         self._ended &= ~mask
-        return self._observations(), self._info(mask)
+        return self._observations(), self._reset_info(mask)
 
     def checked_reset(self, seed: Any, options: Any) -> tuple[Flags, States | None, npt.NDArray[np.float64]]:
         """Return mask, snapshot and starts of a reset; raise ValueError where they are not allowed."""
@@ -146,17 +149,12 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         ended = self._batch.step(actions)
         r = self._batch.results
         rewards, terminated, truncated = r.rewards.copy(), r.terminated.copy(), r.truncated.copy()
-        over = terminated | truncated
         self._frames.update(range(self.num_envs))
-        finals = self._finals(over) if ended and self._mode == AutoresetMode.SAME_STEP else None
-        if ended and self._resets_late:
-            self._batch.reset(over)
-            self._frames.update(np.flatnonzero(over).tolist())
-        info = self._info(np.ones(self.num_envs, np.bool_))
-        if ended:
-            self._tell_ends(info, over, finals)
+        info = {} if not ended else self._info_of_ends(terminated | truncated)
+        if self._told == "all":
+            info |= info_of_worlds(self._batch)
         if self._mode == AutoresetMode.DISABLED:
-            self._ended = over
+            self._ended = terminated | truncated
         return self._observations(), rewards, terminated, truncated, info
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
@@ -300,27 +298,18 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
             finals[w] = seen[w].copy()
         return finals
 
-    def _info(self, mask: Flags) -> dict[str, Any]:
-        told = {"score": self._batch.episodes["score"], "ball": self._batch.episodes["ball"]}
-        if self._batch.levels is not None:
-            told["level"] = self._batch.levels
-        info: dict[str, Any] = {}
-        for key, values in told.items():
-            info[key], info[f"_{key}"] = np.where(mask, values, 0), mask.copy()
-        return info
+    def _reset_info(self, mask: Flags) -> dict[str, Any]:
+        return info_of_worlds(self._batch, mask) if self._told == "all" else {}
 
-    def _tell_ends(self, info: dict[str, Any], ended: Flags, finals: npt.NDArray[Any] | None) -> None:
-        """Add what is said at an episode's end, as Gymnasium's own vector envs do: arrays with masks."""
-        told: dict[str, Any] = {}
-        for key, values in self._batch.end_info().items():
-            told[key], told[f"_{key}"] = values, ended.copy()
-        if finals is None:
-            info.update(told)
-            return
-        r = self._batch.results
-        for key in ("score", "ball", "level")[: 2 + self._batch.game.has_levels]:
-            told |= {key: r.ended[key].copy(), f"_{key}": ended.copy()}
-        info.update(final_obs=finals, _final_obs=ended.copy(), final_info=told, _final_info=ended.copy())
+    def _info_of_ends(self, ended: Flags) -> dict[str, Any]:
+        """Return what is said at the end of these episodes; where worlds are reset after the step, reset them."""
+        if self._mode != AutoresetMode.SAME_STEP:
+            return {} if self._told == "none" else info_of_ends(self._batch, ended)
+        info = final_info(self._batch, ended, self._finals(ended), self._told)
+        if self._resets_late:
+            self._batch.reset(ended)
+            self._frames.update(np.flatnonzero(ended).tolist())
+        return info
 
 
 def vector_env_of(single: type[BounceEnv]) -> type[BounceVectorEnv]:

@@ -63,7 +63,7 @@ class WallsEnv(BounceEnv):
     rendered frame, pixels), `obs_width`, `obs_height` (of an observed one), `trail` (0.0, seconds of the ball's way
     that frames show), `show_bounces` (False: a frame shows the end of a step; True: the last bounce in it),
     `record_events` (False; whether `replay` has what happens). A vector env also takes `num_envs`, `max_episode_steps`,
-    `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True).
+    `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info` ("all").
 
     Versions: v0, first release.
     """

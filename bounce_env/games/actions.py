@@ -1,7 +1,8 @@
 """What an agent may do: from what Gymnasium hands over to the numbers that a game's kernel reads."""
 
 from dataclasses import dataclass
-from typing import ClassVar, TypeAlias
+from functools import cached_property
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -32,8 +33,7 @@ class Continuous:
 
     def controls(self, actions: npt.NDArray[np.generic], worlds: int) -> Controls:
         """Raises ValueError for another shape or type; whether they are finite the kernel asks."""
-        lone = self.size == 1 and (actions.shape == (worlds,) or (worlds == 1 and actions.shape == ()))
-        if not (lone or actions.shape == (worlds, self.size) or (worlds == 1 and actions.shape == (self.size,))):
+        if actions.shape != (worlds, self.size) and not self._is_short(actions.shape, worlds):
             each = "one" if self.size == 1 else str(self.size)
             what = f"{worlds * self.size} numbers, {each} per world"
             raise ValueError(f"actions of shape {actions.shape}: must be {what}")
@@ -43,7 +43,12 @@ class Continuous:
         # A kernel is compiled for arrays of one kind: those that are in order and may be written.
         if rows.dtype == np.float64 and rows.flags.carray:
             return rows.view(np.float64)
-        return np.array(rows, np.float64, order="C")
+        return rows.astype(np.float64, order="C")
+
+    def _is_short(self, shape: tuple[int, ...], worlds: int) -> bool:
+        """Return whether a shape leaves out an axis of length 1."""
+        lone = self.size == 1 and (shape == (worlds,) or (worlds == 1 and shape == ()))
+        return lone or (worlds == 1 and shape == (self.size,))
 
 
 @dataclass(frozen=True)
@@ -61,10 +66,14 @@ class Discrete:
             raise ValueError(f"actions of shape {actions.shape}: must be {worlds} {what}, one per world")
         if actions.dtype.kind not in "iu":
             raise ValueError(f"actions = {shown(actions)}: must be {what}")
-        numbers = actions.reshape(worlds).astype(np.int64)
-        if (numbers < 0).any() or (numbers >= len(self.codes)).any():
+        numbers = actions.reshape(worlds)
+        if _unsigned(numbers).max() >= len(self.codes):
             raise ValueError(f"actions = {shown(actions)}: each must be a whole number from 0 to {len(self.codes) - 1}")
-        return np.array(self.codes)[numbers][:, None]
+        return self._table[numbers]
+
+    @cached_property
+    def _table(self) -> Controls:
+        return np.array(self.codes)[:, None]
 
 
 @dataclass(frozen=True)
@@ -81,10 +90,19 @@ class Buttons:
             raise ValueError(
                 f"actions of shape {actions.shape}: must be ({worlds}, {self.count}), 0 or 1 for each button"
             )
-        if actions.dtype.kind not in "iub" or not np.isin(actions, (0, 1)).all():
+        if actions.dtype.kind not in "iub" or _unsigned(actions).max() > 1:
             raise ValueError(f"actions = {shown(actions)}: each must be 0 or 1")
-        bits = actions.reshape(worlds, self.count).astype(np.float64) * 2.0 ** np.arange(self.count)
-        return bits.sum(axis=1, keepdims=True)
+        weighed: Controls = actions.reshape(worlds, self.count).astype(np.float64) @ self._weights
+        return weighed
+
+    @cached_property
+    def _weights(self) -> Controls:
+        return np.exp2(np.arange(self.count, dtype=np.float64))[:, None]
+
+
+def _unsigned(numbers: npt.NDArray[np.generic]) -> npt.NDArray[np.unsignedinteger[Any]]:
+    """Return whole numbers read as unsigned ones: those below zero are then greater than any that means something."""
+    return numbers.view(f"{numbers.dtype.byteorder}u{numbers.dtype.itemsize}")
 
 
 Actions: TypeAlias = Continuous | Discrete | Buttons

@@ -212,25 +212,21 @@ class Batch:
         text = repr((type(game).__module__, type(game).__qualname__, game.scenes, replace(game.options, scene=None)))
         return hashlib.sha256(text.encode()).hexdigest()
 
-    def end_info(self) -> dict[str, Array]:
-        """Return what is said of the episodes that ended in the last step, (worlds,) each; 0 or None where none did."""
-        books = self.results.ended
-        reasons = np.full(self.worlds, None, object)
-        ended = np.flatnonzero(books["end"])
+    def end_info(self, ended: Array) -> dict[str, Array]:
+        """Return what is said of the episodes that ended in the last step, in the worlds `ended` (indices).
+
+        Of shape (worlds,) each; 0 or None of the other worlds.
+        """
+        books, counted = self.results.ended, self.results.counted
+        reasons = np.empty(self.worlds, object)  # of None
         reasons[ended] = _END_REASONS[books["end"][ended]]
         return {
             "end_reason": reasons,
-            **{name: self._counted(name, j) for j, name in enumerate(self.game.counters)},
+            **{name: _counts(name, counted[:, j]) for j, name in enumerate(self.game.counters)},
             "bounces": books["bounces"].copy(),
             "speed_capped": books["speed_capped"].copy(),
             "game_seconds": books["seconds"].copy(),
         }
-
-    def _counted(self, name: str, j: int) -> Array:
-        counts = self.results.counted[:, j]
-        if name.startswith("points_"):
-            return counts.copy()
-        return counts.astype(np.bool_ if name.startswith("is_") else np.int64)
 
     def view(self, world: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Balls (1, 4): x, y [m], vx, vy [m/s], and the ends of the parts' cores (m, 4) [m] of a world now."""
@@ -271,6 +267,13 @@ class Batch:
         if self._threads is not None and self._process == os.getpid():
             self._threads.shutdown()
         self._threads = None
+
+
+def _counts(name: str, counts: Array) -> Array:
+    """Return a copy of what a game has counted as what it is by its name: points, whether, or how many."""
+    if name.startswith("points_"):
+        return counts.copy()
+    return counts.astype(np.bool_ if name.startswith("is_") else np.int64)
 
 
 def _as_array(actions: Any) -> Array:

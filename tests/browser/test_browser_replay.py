@@ -79,7 +79,9 @@ def test_two_replays_in_a_notebook_do_not_meddle(browser, tmp_path):
 def test_a_replay_in_an_output_that_is_folded_is_there_when_it_is_opened(browser, tmp_path):
     frame = load_replay(STORED)._repr_html_()
     notebook = tmp_path / "notebook.html"
-    notebook.write_text(f"<!doctype html><meta charset=utf-8><title>Notebook</title><div hidden>{frame}</div>", encoding="utf-8")
+    notebook.write_text(
+        f"<!doctype html><meta charset=utf-8><title>Notebook</title><div hidden>{frame}</div>", encoding="utf-8"
+    )
     with page_of(browser) as page:
         page.goto(notebook.as_uri())
         inside = page.frames[1]

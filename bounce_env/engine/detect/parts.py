@@ -2,7 +2,7 @@
 
 import math
 
-from bounce_env.engine.compile.jit import function, where
+from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.detect.along_curve import curve_search
 from bounce_env.engine.detect.crossings_along_curve import circle_change_along, strip_change_along
 from bounce_env.engine.detect.parts_along_curve import meet_part_along_curve
@@ -11,6 +11,7 @@ from bounce_env.engine.impact.capsule import capsule_time
 from bounce_env.engine.impact.line import Line, face_time
 from bounce_env.engine.impact.rotating_capsule import rotating_capsule_time
 from bounce_env.engine.impact.stretching_wall import stretching_wall_time
+from bounce_env.engine.impact.swept_box import box_entry_time, box_leaving_time, box_of, is_in_box
 from bounce_env.engine.memory.lookup import is_off, side_of_part
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import (
@@ -35,19 +36,17 @@ from bounce_env.engine.motion.parts import (
 )
 from bounce_env.engine.motion.path import is_bent, is_bent_and_moving, is_on_curve
 from bounce_env.engine.motion.roots import falling_root
-
-# The zone of a part is wider than its reach by this share: it keeps rounding of the border from hiding a hit.
-ZONE_MARGIN = 1.01
+from bounce_env.engine.tolerances import ZONE_MARGIN
 
 
 @function
 def plan_part_zones(state: State, w: int, k: int, now: float) -> None:
     """Bring the ball's zones up to `now` seconds after its last event, and set when the next of them changes.
 
-    The zone of a part is where it can be met: of one that slides the strip along its rail, of one that turns the circle
-    about its pivot, of a dragged wall everything; all is in it while the ball slides on a curve that moves, or is
-    carried. It is a static sensor of the engine's own: passing its border neither re-bases the flight nor shows in the
-    ledger.
+    The zone of a part is where it can be met: of one that slides the strip along its rail, of one that turns a box (or,
+    while the ball slides on a curve, the circle about its pivot), of a dragged wall everything; all is in it while the
+    ball slides on a curve that moves, or is carried. It is a static sensor of the engine's own: passing its border
+    neither re-bases the flight nor shows in the ledger.
     """
     state.balls[w, k].zone_after = math.inf
     _plan_part_zones(state, w, k, now)
@@ -62,7 +61,7 @@ def _plan_part_zones(state: State, w: int, k: int, now: float) -> None:
             zone.inside, zone.after = 1, math.inf
             continue
         if now == 0.0:
-            inside = _is_in_part_zone(part, ball.x - part.shape.x, ball.y - part.shape.y)
+            inside = _is_in_part_zone(state, w, k, part)
             zone.inside, zone.after = 1 if inside else 0, 0.0
         elif zone.after <= now:
             zone.inside = 1 - zone.inside
@@ -74,8 +73,11 @@ def _plan_part_zones(state: State, w: int, k: int, now: float) -> None:
 
 
 @function
-def _is_in_part_zone(part: MovingPart, x: float, y: float) -> bool:
-    border, shape = _part_zone_border(part), part.shape
+def _is_in_part_zone(state: State, w: int, k: int, part: MovingPart) -> bool:
+    ball, shape = state.balls[w, k], part.shape
+    if part.turn != 0 and not is_on_curve(state, w, k):
+        return is_in_box(box_of(shape), ball.x, ball.y)
+    x, y, border = ball.x - shape.x, ball.y - shape.y, _part_zone_border(part)
     if part.turn != 0:
         return x * x + y * y <= border * border
     return abs(y * shape.ux - x * shape.uy) <= border
@@ -83,20 +85,20 @@ def _is_in_part_zone(part: MovingPart, x: float, y: float) -> bool:
 
 @function
 def _part_zone_border(part: MovingPart) -> float:
-    """Return how far [m] the zone of a part reaches from its pivot, or from its rail."""
+    """Return how far [m] the zone of a part reaches from its rail, or from its pivot where it is a circle."""
     shape = part.shape
-    return ZONE_MARGIN * (shape.front + shape.offset_radius if part.turn != 0 else shape.offset_radius)
+    return (1.0 + ZONE_MARGIN) * (shape.front + shape.offset_radius if part.turn != 0 else shape.offset_radius)
 
 
 @function
 def _part_zone_change_in_flight(state: State, w: int, k: int, m: int, inside: bool, after: float) -> float:
-    ball, part = state.balls[w, k], moving_part(state, w, m)
-    shape, border = part.shape, _part_zone_border(part)
-    seen = flight_seen_from(flight_of(state, ball), shape.x, shape.y)
+    flight, part = flight_of(state, state.balls[w, k]), moving_part(state, w, m)
+    shape = part.shape
     if part.turn != 0:
-        circle = Circle(border, 1.0 if inside else -1.0)
-        return arc_crossing_time(seen, None, circle, after == 0.0, ball.tolerance, after, ball.end_after)
-    return _part_strip_change(seen, shape.ux, shape.uy, border, inside, after)
+        box = box_of(shape)
+        return box_leaving_time(flight, box, after) if inside else box_entry_time(flight, box, after)
+    seen = flight_seen_from(flight, shape.x, shape.y)
+    return _part_strip_change(seen, shape.ux, shape.uy, _part_zone_border(part), inside, after)
 
 
 @where("curve_slides", otherwise=_part_zone_change_in_flight)
@@ -148,8 +150,8 @@ def _meet_part_in_flight(state: State, w: int, k: int, m: int, side: int, leaves
     if is_dragged_part(part):
         after = _meet_dragged_part(part, seen, core, side, tolerance, horizon)
     elif part.turn != 0 and motion.velocity != 0.0:
-        spin = part.turn * motion.velocity
-        after = rotating_capsule_time(seen, core, shape.offset_radius, spin, tolerance, horizon)
+        horizon = min(ball.end_after - t, since(stop_hi, stop_lo, hi, lo))
+        after = _meet_turning_part(ball, part, flight, t, seen, core, tolerance, horizon)
     else:
         if part.turn == 0:
             seen = flight_seen_from_moving(seen, motion.velocity * core.ux, motion.velocity * core.uy)
@@ -157,6 +159,26 @@ def _meet_part_in_flight(state: State, w: int, k: int, m: int, side: int, leaves
     if after == math.inf:
         return math.inf, 0.0
     return later(hi, lo, after)
+
+
+@function
+def _meet_turning_part(
+    ball: Record, part: MovingPart, flight: Flight, t: float, seen: Flight, core: Core, tolerance: float, horizon: float
+) -> float:
+    """Hit of a part that turns, seen from its pivot from `t` seconds after the flight's beginning on.
+
+    The ball passes the circle that the part can reach up to twice; the shorter a search, the nearer its bounds.
+    """
+    spin, shape, after, found = part.turn * part.motion.velocity, part.shape, t, math.inf
+    circle = Circle(_part_zone_border(part), 1.0)
+    from_pivot = flight_seen_from(flight, shape.x, shape.y)
+    for _ in range(2):
+        leaves = arc_crossing_time(from_pivot, None, circle, after == 0.0, ball.tolerance, after, ball.end_after)
+        found = rotating_capsule_time(seen, core, shape.offset_radius, spin, tolerance, min(horizon, leaves - t))
+        if found < math.inf or leaves == math.inf:
+            return found
+        after = leaves
+    return found
 
 
 @where("curve_slides", otherwise=_meet_part_in_flight)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from bounce_env.engine.compile.jit import function, where
 from bounce_env.engine.impact.arc import arc_entry_time
 from bounce_env.engine.impact.line import Line, facing_time, line_time
+from bounce_env.engine.impact.swept_box import box_of, circle_box, misses_box, sweep_of
 from bounce_env.engine.memory.records import CIRCLE_ENTRY, FIELD_BORDER, LINE_SENSOR
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import Flight, flight_seen_from
@@ -45,8 +46,11 @@ def _no_earlier_crossing(state: State, w: int, k: int, flight: Flight, last: Cro
 @where("sensors", otherwise=_no_earlier_crossing)
 def _first_line_crossing(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
     ball, scene = state.balls[w, k], state.worlds[w].scene
+    sweep = sweep_of(flight, state.scenes[scene].extent, ball.end_after)
     for i in range(state.scenes[scene].sensors):
         sensor, side = state.sensors[scene, i], state.sensor_sides[w, k, i]
+        if misses_box(flight, sweep, box_of(sensor)):
+            continue
         seen, line = flight_seen_from(flight, sensor.x, sensor.y), Line(sensor.ux, sensor.uy, sensor.length, 0.0)
         for facing in (1.0, -1.0):
             t = facing_time(seen, line, facing, side, ball.tolerance, ball.end_after)
@@ -58,8 +62,11 @@ def _first_line_crossing(state: State, w: int, k: int, flight: Flight, last: Cro
 @where("circle_sensors", otherwise=_no_earlier_crossing)
 def _first_circle_entry(state: State, w: int, k: int, flight: Flight, last: Crossing, best: Crossing) -> Crossing:
     ball, scene = state.balls[w, k], state.worlds[w].scene
+    sweep = sweep_of(flight, state.scenes[scene].extent, ball.end_after)
     for i in range(state.scenes[scene].circle_sensors):
         ring, outside = state.circle_sensors[scene, i], state.circle_sensor_sides[w, k, i] > 0
+        if misses_box(flight, sweep, circle_box(ring.x, ring.y, ring.radius)):
+            continue
         # A ball may enter a circle twice in one flight: what came before is no answer.
         tie = follows_crossing(last.after, CIRCLE_ENTRY, i, last)
         after = last.after - abs(last.after) * ULP if tie else last.after

@@ -6,6 +6,7 @@ from bounce_env.engine.compile.jit import Record, function, where
 from bounce_env.engine.impact.arc import arc_time
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.impact.line import Line, face_time, facing_time, is_beside_line, leaves_line_end
+from bounce_env.engine.impact.swept_box import box_of, circle_box, misses_box, sweep_of
 from bounce_env.engine.memory.lookup import is_off, is_one_way, is_sliding, side_on
 from bounce_env.engine.memory.records import CLOSED, LEANS, RIDING
 from bounce_env.engine.memory.state import State
@@ -14,12 +15,9 @@ from bounce_env.engine.motion.flight import (
     flight_acceleration_along,
     flight_place_after,
     flight_seen_from,
-    swept_interval,
 )
 from bounce_env.engine.motion.roots import falling_root
 from bounce_env.engine.tolerances import CLUSTER_GAP, PRESSING, ULPS_OF_SPEED
-
-Box = tuple[float, float, float, float]  # left, right, below, above [m]
 
 
 @function
@@ -97,10 +95,11 @@ def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: floa
     (nx, ny) is the normal of what the ball slides on, (0, 0) in flight.
     """
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    best, index = horizon, -1
+    extent, best, index = state.scenes[scene].extent, horizon, -1
+    sweep = sweep_of(flight, extent, horizon)
     for i in range(state.scenes[scene].faces):
         face = state.faces[scene, i]
-        if is_off(state, w, face.element):
+        if misses_box(flight, sweep, box_of(face)) or is_off(state, w, face.element):
             continue
         if is_sliding(ball) and (i == ball.contact or _is_level_on_face(ball, flight, face)):
             continue
@@ -114,7 +113,7 @@ def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: floa
         else:
             t = face_time(from_start, face_line(face), side, ball.tolerance, best)
         if t < best and not _slides_over_face_end(ball, flight, face, nx, ny, t):
-            best, index = t, i
+            best, index, sweep = t, i, sweep_of(flight, extent, t)
     return best, index
 
 
@@ -135,38 +134,17 @@ def _slides_past_circle(ball: Record, nx: float, ny: float, x: float, y: float, 
     return is_sliding(ball) and x * nx + y * ny >= offset_radius - ball.tolerance
 
 
-@function
-def _swept_box(flight: Flight, horizon: float) -> Box:
-    left, right = swept_interval(flight.x, flight.vx, flight.ax, horizon)
-    below, above = swept_interval(flight.y, flight.vy, flight.ay, horizon)
-    return left, right, below, above
-
-
-@function
-def _is_off_box(circle: Record, radius: float, box: Box) -> bool:
-    """Return whether a circle of this radius about (circle.x, circle.y) lies beside a box that a flight sweeps.
-
-    Written so that a box with infinite or undefined borders (an unbounded flight) rejects nothing.
-    """
-    left, right, below, above = box
-    beside = circle.x + radius < left or circle.x - radius > right
-    return beside or circle.y + radius < below or circle.y - radius > above
-
-
 @where("circles", otherwise=_no_standing_surface)
 def first_circle(
     state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float
 ) -> tuple[float, int]:
-    """Return the earliest hit of a bumper or an end before `horizon` [s]; as `first_face`.
-
-    A circle that the box swept by the flight does not reach cannot be hit; most are rejected by that alone.
-    """
+    """Return the earliest hit of a bumper or an end before `horizon` [s]; as `first_face`."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    best, index = horizon, -1
-    box = _swept_box(flight, horizon)
+    extent, best, index = state.scenes[scene].extent, horizon, -1
+    sweep = sweep_of(flight, extent, horizon)
     for i in range(state.scenes[scene].circles):
         circle = state.circles[scene, i]
-        if _is_off_box(circle, circle.offset_radius + ball.tolerance, box):
+        if misses_box(flight, sweep, circle_box(circle.x, circle.y, circle.offset_radius)):
             continue
         seen = flight_seen_from(flight, circle.x, circle.y)
         if _is_circle_left_to_cluster(state, w, ball, seen, circle.offset_radius):
@@ -175,7 +153,7 @@ def first_circle(
             continue
         t = circle_time(seen, circle.offset_radius, ball.tolerance, best)
         if t < best:
-            best, index = t, i
+            best, index, sweep = t, i, sweep_of(flight, extent, t)
     return best, index
 
 
@@ -183,11 +161,11 @@ def first_circle(
 def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float) -> tuple[float, int]:
     """Return the earliest hit of an arc before `horizon` [s]; as `first_face`."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    best, index = horizon, -1
-    box = _swept_box(flight, horizon)
+    extent, best, index = state.scenes[scene].extent, horizon, -1
+    sweep = sweep_of(flight, extent, horizon)
     for i in range(state.scenes[scene].arcs):
         arc = state.arcs[scene, i]
-        if _is_off_box(arc, arc.outer + ball.tolerance, box) or is_off(state, w, arc.element):
+        if misses_box(flight, sweep, box_of(arc)) or is_off(state, w, arc.element):
             continue
         seen = flight_seen_from(flight, arc.x, arc.y)
         if _is_circle_left_to_cluster(state, w, ball, seen, arc.outer) or _is_circle_left_to_cluster(
@@ -197,7 +175,7 @@ def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float
         past = _slides_past_circle(ball, nx, ny, seen.x, seen.y, arc.outer)
         t = arc_time(seen, arc, side_on(state.arc_sides, w, k, i), past, ball.tolerance, best)
         if t < best:
-            best, index = t, i
+            best, index, sweep = t, i, sweep_of(flight, extent, t)
     return best, index
 
 

@@ -22,8 +22,8 @@ from bounce_env.engine.memory.records import BUDGET, CRUSHED, FLYING, NEXT_HIT, 
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import flight_of
 from bounce_env.engine.motion.instant import before, later, since
-from bounce_env.engine.motion.parts import part_offset_at, part_stop_instant
-from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED, UNSURE
+from bounce_env.engine.motion.parts import part_moves_until, part_stop_instant
+from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED
 
 # How a run of the loop ends.
 DONE, BUDGET_SPENT, PAGE_FULL, BOUNCED = 0, 1, 2, 3
@@ -110,7 +110,7 @@ def _first_part_stop(state: State, w: int, until_hi: float, until_lo: float) -> 
     hi, lo, first = math.inf, 0.0, -1
     for m in range(state.motions.shape[1]):
         motion, shape = state.motions[w, m], state.parts[scene, m]
-        if _part_moves_until(motion, shape, until_hi, until_lo):
+        if part_moves_until(motion, shape, until_hi, until_lo):
             continue
         stop_hi, stop_lo = part_stop_instant(motion, shape)
         if not before(until_hi, until_lo, stop_hi, stop_lo) and before(stop_hi, stop_lo, hi, lo):
@@ -119,29 +119,24 @@ def _first_part_stop(state: State, w: int, until_hi: float, until_lo: float) -> 
 
 
 @function
-def _part_moves_until(motion: Record, shape: Record, hi: float, lo: float) -> bool:
-    """Return whether the part surely comes to no stop up to an instant: most are told so without a division.
-
-    The margin covers the rounding of the two ways; within it the stop's instant decides. Asked of both stops alike,
-    since which one lies ahead is a coin's toss to the processor.
-    """
-    margin = UNSURE * shape.span
-    return motion.velocity == 0.0 or margin < part_offset_at(motion, hi, lo) < shape.span - margin
+def is_calm(state: State, w: int, until_hi: float, until_lo: float) -> bool:
+    """Return whether surely nothing happens in world `w` up to and including an instant."""
+    return balls_are_calm(state, w, until_hi, until_lo) and _all_parts_move_until(state, w, until_hi, until_lo)
 
 
 @function
-def is_calm(state: State, w: int, until_hi: float, until_lo: float) -> bool:
-    """Return whether surely nothing happens in world `w` up to and including an instant."""
+def balls_are_calm(state: State, w: int, until_hi: float, until_lo: float) -> bool:
+    """Return whether surely no ball of world `w` has an event up to and including an instant."""
     for k in range(state.balls.shape[1]):
         if not before(until_hi, until_lo, state.balls[w, k].next_hi, state.balls[w, k].next_lo):
             return False
-    return first_pair(state, w, until_hi, until_lo)[2] < 0 and _all_parts_move_until(state, w, until_hi, until_lo)
+    return first_pair(state, w, until_hi, until_lo)[2] < 0
 
 
 @where("parts", otherwise=True)
 def _all_parts_move_until(state: State, w: int, until_hi: float, until_lo: float) -> bool:
     for m in range(state.motions.shape[1]):
-        if not _part_moves_until(state.motions[w, m], state.parts[state.worlds[w].scene, m], until_hi, until_lo):
+        if not part_moves_until(state.motions[w, m], state.parts[state.worlds[w].scene, m], until_hi, until_lo):
             return False
     return True
 

@@ -40,7 +40,7 @@ class Row(NamedTuple):
 def append_row(state: State, w: int, row: Row) -> None:
     """Write a row into the ledger, where this world is recorded."""
     ledger, head = state.recording.ledger, state.recording.head[0]
-    if head.world != w:
+    if not is_recorded(state, w):
         return
     if head.rows == ledger.shape[0]:
         head.lost += 1
@@ -84,11 +84,18 @@ def append_stop(
 
 
 @function
+def is_recorded(state: State, w: int) -> bool:
+    """Return whether what happens in world `w` is recorded."""
+    recorded: bool = state.recording.head[0].world == w
+    return recorded
+
+
+@function
 def is_page_full(state: State, w: int, rows: int) -> bool:
     """Return whether the recording of world `w` lacks room for `rows` rows and a moment."""
     recording, head = state.recording, state.recording.head[0]
     moments = recording.moments.shape[0]
-    return head.world == w and (
+    return is_recorded(state, w) and (
         head.rows + rows > recording.ledger.shape[0] or (moments > 0 and head.moments == moments)
     )
 
@@ -97,7 +104,7 @@ def is_page_full(state: State, w: int, rows: int) -> bool:
 def keep_moment(state: State, w: int) -> None:
     """Write from what state the balls and parts of world `w` go on now, where it is recorded with room for moments."""
     recording, head = state.recording, state.recording.head[0]
-    if head.world != w or recording.moments.shape[0] == 0:
+    if not is_recorded(state, w) or recording.moments.shape[0] == 0:
         return
     if head.moments == recording.moments.shape[0]:
         head.lost += 1

@@ -28,14 +28,16 @@ ELEMENT = record(
     kick="f8", kick_threshold="f8",  # [m/s]
     cooldown="f8",  # [s]
 )  # fmt: skip
-FACE = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", offset_radius="f8", element="i8")
+BOX = {"left": "f8", "right": "f8", "below": "f8", "above": "f8"}  # [m] where the ball's centre is while it touches it
+FACE = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", offset_radius="f8", **BOX, element="i8")
 CIRCLE = record(x="f8", y="f8", offset_radius="f8", element="i8")
 ARC = record(
     x="f8", y="f8", outer="f8", inner="f8",  # [m] distances from the centre at which it is struck; inner 0: never
     sx="f8", sy="f8", ex="f8", ey="f8", span="i8",  # unit vectors to start and end; CLOSED, MINOR or MAJOR
+    **BOX,
     element="i8",
 )  # fmt: skip
-SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", drain="i8", element="i8")
+SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", **BOX, drain="i8", element="i8")
 CIRCLE_SENSOR = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
 FIELD_EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
 PART = record(  # what moves: a capsule that slides along its core or turns about (x, y), or a dragged wall
@@ -45,6 +47,7 @@ PART = record(  # what moves: a capsule that slides along its core or turns abou
     span="f8", start="f8",  # [m or rad] from stop to stop, 0 of a dragged wall; offset after a reset
     up_speed="f8", down_speed="f8",  # [m/s or rad/s] the fastest either way
     shuttle="f8",  # [m/s] of a part that turns back at its stops: the speed at which it sets off; otherwise 0
+    **BOX,  # of one that turns, wherever it is, and some more: its zone
     element="i8",
 )  # fmt: skip
 DRAG_LIMITS = record(  # of a dragged wall

@@ -1,10 +1,19 @@
 """The rules of the pinball game: points, lamps, balls, and what keeps a player from doing nothing for points."""
 
 from bounce_env.engine.compile.jit import function
-from bounce_env.engine.events.commands import command_flipper
+from bounce_env.engine.events.commands import (
+    command_flipper,
+    goes_on_quietly,
+    obey_quietly,
+    obeys_quietly,
+    pressed_velocity,
+)
 from bounce_env.engine.events.flights import disturb
-from bounce_env.engine.events.loop import DONE, clear_hits, is_calm, restart, resume, run
+from bounce_env.engine.events.loop import DONE, balls_are_calm, clear_hits, restart, resume, run
+from bounce_env.engine.memory.ledger import is_recorded
 from bounce_env.engine.memory.records import OUT, Array
+from bounce_env.engine.motion.instant import since
+from bounce_env.engine.motion.path import motion_after
 from bounce_env.engine.motion.readout import ball_now
 from bounce_env.games.episode import (
     DRAINED,
@@ -66,11 +75,18 @@ def begin(rules: Rules, game: GameState, w: int) -> None:
 @function
 def press(rules: Rules, game: GameState, w: int, buttons: int) -> None:
     """Let each flipper go up or down as its button says."""
-    memory, scene = game.memory[w], game.state.worlds[w].scene
+    scene = game.state.worlds[w].scene
     for m in range(rules.layout.sides.shape[1]):
         side = rules.layout.sides[scene, m]
         if side:
             command_flipper(game.state, w, m, buttons & side != 0)
+    note_pressed(game, w, buttons)
+
+
+@function
+def note_pressed(game: GameState, w: int, buttons: int) -> None:
+    """Count what is pressed, and note when what is let go acts again."""
+    memory = game.memory[w]
     pressed_now, let_go = buttons & ~memory.pressed, memory.pressed & ~buttons
     game.counters[w, FLIPS] += (pressed_now & 1) + (pressed_now >> 1)
     ready = game.episodes[w].frames + REST_FRAMES
@@ -202,29 +218,23 @@ def nudge(game: GameState, w: int, buttons: int) -> None:
 
 @function
 def step_quietly(rules: Rules, game: GameState, actions: Array, w: int) -> bool:
-    """Return the step of a world in which nothing happens: the same buttons, no event, and the clock changes nothing.
+    """Play the step of a world in which no ball has an event, none is near a flipper, and the clock changes nothing.
 
     False, and nothing done, where something may. The rewards and ends of `results` are expected to say so already.
     """
     state, episode, memory = game.state, game.episodes[w], game.memory[w]
-    world = state.worlds[w]
     frames = episode.frames + rules.pace.frame_skip
     if episode.end != RUNNING or frames >= rules.pace.limit or rules.pace.repeat > 0.0:
         return False
-    if episode.steps + 1 >= rules.pace.steps:
+    if episode.steps + 1 >= rules.pace.steps or memory.serving or memory.tilt > 0.0 or memory.tilted:
         return False
-    if actions[w, 0] != memory.pressed or memory.serving or memory.tilt > 0.0 or memory.tilted:
-        return False
-    if frames - memory.scored >= STUCK_FRAMES or not falls_from_high(rules, game, w):
+    if memory.zone >= 0 or frames - memory.scored >= STUCK_FRAMES or is_recorded(state, w):
         return False
     until = frames / rules.pace.fps
-    if not is_calm(state, w, until, 0.0):
+    buttons = buttons_in_step(rules, game, w, int(actions[w, 0]))
+    if buttons < 0 or not balls_are_calm(state, w, until, 0.0) or not keeps_high(rules, game, w, until):
         return False
-    hi, lo = world.time_hi, world.time_lo
-    world.time_hi, world.time_lo = until, 0.0
-    # A flight that bends downwards is, between two frames, no lower than at one of them.
-    if not falls_from_high(rules, game, w):
-        world.time_hi, world.time_lo = hi, lo
+    if not press_quietly(rules, game, w, buttons, until):
         return False
     clear_hits(state, w)
     # An episode that ended in the last step has been followed by a new one, of which this is the first step.
@@ -237,7 +247,45 @@ def step_quietly(rules: Rules, game: GameState, actions: Array, w: int) -> bool:
 
 
 @function
-def falls_from_high(rules: Rules, game: GameState, w: int) -> bool:
-    """Return whether the ball is above the flippers' zone in a flight that does not bend upwards."""
-    table = rules.layout.tables[game.state.worlds[w].scene]
-    return game.state.balls[w, 0].ay <= 0.0 and ball_now(game.state, w, 0)[1] > table.zone_top
+def buttons_in_step(rules: Rules, game: GameState, w: int, code: int) -> int:
+    """Return the flippers' buttons in force in every frame of a step; -1 where they change in it, or with a nudge."""
+    memory, frames, buttons = game.memory[w], game.episodes[w].frames, 0
+    if rules.nudge and code & (NUDGE_LEFT | NUDGE_RIGHT):
+        return -1
+    for side in (LEFT, RIGHT):
+        if code & side:
+            rest = rest_left(memory, frames, side)
+            if memory.pressed & side or rest == 0:
+                buttons |= side
+            elif rest < rules.pace.frame_skip:
+                return -1
+    return buttons
+
+
+@function
+def press_quietly(rules: Rules, game: GameState, w: int, buttons: int, until: float) -> bool:
+    """Press buttons, and let all parts move up to an instant; return False, with nothing done, where a ball is near."""
+    state, world, sides = game.state, game.state.worlds[w], rules.layout.sides
+    for m in range(sides.shape[1]):
+        side = sides[world.scene, m]
+        if not side and not goes_on_quietly(state, w, m, until, 0.0):
+            return False
+        if side and not obeys_quietly(state, w, m, pressed_velocity(state, w, m, buttons & side != 0), until, 0.0):
+            return False
+    for m in range(sides.shape[1]):
+        side = sides[world.scene, m]
+        if side:
+            obey_quietly(state, w, m, pressed_velocity(state, w, m, buttons & side != 0), until, 0.0)
+    note_pressed(game, w, buttons)
+    world.time_hi, world.time_lo = until, 0.0
+    return True
+
+
+@function
+def keeps_high(rules: Rules, game: GameState, w: int, until: float) -> bool:
+    """Return whether the ball is above the flippers' zone up to an instant, in a flight that does not bend upwards."""
+    state, world = game.state, game.state.worlds[w]
+    ball, top = state.balls[w, 0], rules.layout.tables[world.scene].zone_top
+    now, then = since(world.time_hi, world.time_lo, ball.hi, ball.lo), since(until, 0.0, ball.hi, ball.lo)
+    # A flight that bends downwards is, between two frames, no lower than at one of them.
+    return ball.ay <= 0.0 and motion_after(state, w, 0, now)[1] > top and motion_after(state, w, 0, then)[1] > top

@@ -24,10 +24,11 @@ class Box(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """How far a flight is searched: up to a horizon [s]; by how much boxes are widened [m]; 1 / vx [s/m]."""
+    """How far a flight is searched: up to a horizon [s], the box that it sweeps until then; and 1 / vx [s/m]."""
 
     horizon: float
-    margin: float
+    box: Box
+    margin: float  # [m] by which boxes are wider
     inverse: float
 
 
@@ -35,7 +36,10 @@ class Sweep(NamedTuple):
 def sweep_of(flight: Flight, extent: float, horizon: float) -> Sweep:
     """Return what boxes are asked by, of a flight up to a horizon [s] in a scene of this extent [m]."""
     margin = BOX_MARGIN * (extent + flight_path_bound(flight, horizon))
-    return Sweep(horizon, margin, 1.0 / flight.vx if abs(flight.vx) > STANDING else math.inf)
+    left, right = swept_interval(flight.x, flight.vx, flight.ax, horizon)
+    below, above = swept_interval(flight.y, flight.vy, flight.ay, horizon)
+    box = Box(left - margin, right + margin, below - margin, above + margin)
+    return Sweep(horizon, box, margin, 1.0 / flight.vx if abs(flight.vx) > STANDING else math.inf)
 
 
 @function
@@ -52,32 +56,32 @@ def circle_box(x: float, y: float, radius: float) -> Box:
 
 @function
 def misses_box(flight: Flight, sweep: Sweep, box: Box) -> bool:
-    """Return whether a flight surely does not come to a box before its horizon."""
-    if not sweep.margin < math.inf:  # a flight without an end
-        return False
-    left, right = box.left - sweep.margin - flight.x, box.right + sweep.margin - flight.x
-    start, end = _times_beside(flight, sweep, left, right)
-    if start > end:
+    """Return whether a flight surely does not come to a box before its horizon.
+
+    Written so that infinite or undefined borders, of a flight without an end, leave out nothing.
+    """
+    swept = sweep.box
+    beside = (box.right < swept.left) | (box.left > swept.right)
+    if beside | (box.above < swept.below) | (box.below > swept.above):
         return True
-    low, high = _swept_between(flight.y, flight.vy, flight.ay, start, end)
-    return high < box.below - sweep.margin or low > box.above + sweep.margin
+    return _passes_beside(flight, sweep, box)
 
 
 @function
-def _times_beside_uniformly(flight: Flight, sweep: Sweep, left: float, right: float) -> tuple[float, float]:
-    """Return from when to when [s] a flight, uniform along x, is between left and right [m] of where it begins."""
-    if sweep.inverse == math.inf:
-        return 0.0, sweep.horizon if left <= 0.0 <= right else -1.0
-    one, other = left * sweep.inverse, right * sweep.inverse
-    return max(min(one, other), 0.0), min(max(one, other), sweep.horizon)
+def _passes_beside_uniformly(flight: Flight, sweep: Sweep, box: Box) -> bool:
+    """Return the same by what a flight that is uniform along x sweeps along y while it is beside the box."""
+    if sweep.inverse == math.inf or not sweep.margin < math.inf:
+        return False
+    one = (box.left - sweep.margin - flight.x) * sweep.inverse
+    other = (box.right + sweep.margin - flight.x) * sweep.inverse
+    start, end = max(min(one, other), 0.0), min(max(one, other), sweep.horizon)
+    low, high = _swept_between(flight.y, flight.vy, flight.ay, start, end)
+    return (start > end) | (high < box.below - sweep.margin) | (low > box.above + sweep.margin)
 
 
-@where("ax", otherwise=_times_beside_uniformly)
-def _times_beside(flight: Flight, sweep: Sweep, left: float, right: float) -> tuple[float, float]:
-    if flight.ax == 0.0:
-        return _times_beside_uniformly(flight, sweep, left, right)
-    low, high = swept_interval(0.0, flight.vx, flight.ax, sweep.horizon)
-    return 0.0, sweep.horizon if low <= right and high >= left else -1.0
+@where("ax", otherwise=_passes_beside_uniformly)
+def _passes_beside(flight: Flight, sweep: Sweep, box: Box) -> bool:
+    return flight.ax == 0.0 and _passes_beside_uniformly(flight, sweep, box)
 
 
 @function

@@ -9,7 +9,7 @@ from tqdm import tqdm
 from bounce_env.commands.cli import FINE, Refused, say
 from bounce_env.engine import World, WorldBatch
 from bounce_env.engine.compile.cache import cache_folder
-from bounce_env.engine.world_kernels import world_advance_to
+from bounce_env.engine.world_kernels import world_advance
 from bounce_env.lab.kernels import compile_game, compile_world
 from bounce_env.lab.table import free_place
 from bounce_env.registration import ENTRIES, games
@@ -31,7 +31,7 @@ def compile_kernels(names: tuple[str, ...]) -> int:
             bar.update()
             bar.clear()
             say(f"{name}: {'was there' if seconds < QUICK else 'compiled'} ({seconds:.1f} s)")
-    folder = cache_folder(world_advance_to)
+    folder = cache_folder(world_advance)
     say(f"kept in {folder}" if folder else "kept nowhere: no folder can be written (bounce-env doctor says more)")
     return FINE
 

@@ -46,9 +46,9 @@ def _version_of(package: str) -> str | None:
 
 def _cache() -> str:
     from bounce_env.engine.compile.cache import cache_folder  # noqa: PLC0415
-    from bounce_env.engine.world_kernels import world_advance_to  # noqa: PLC0415
+    from bounce_env.engine.world_kernels import world_advance  # noqa: PLC0415
 
-    folder = cache_folder(world_advance_to)
+    folder = cache_folder(world_advance)
     if folder is None:
         return "none that can be written: kernels are compiled in each process; set NUMBA_CACHE_DIR"
     kernels = len(list(Path(folder).glob("*.nbc")))

@@ -27,8 +27,8 @@ from bounce_env.engine.placement import Core, part_cores_at_start, place_clear, 
 from bounce_env.engine.recorded import Recorded, recorded_of, with_present_moment
 from bounce_env.engine.snapshot import restore_bytes, snapshot_bytes
 from bounce_env.engine.world_kernels import (
-    world_advance_to,
-    world_begin_call,
+    GO_ON,
+    world_advance,
     world_command_part,
     world_command_wall,
     world_place_ball,
@@ -139,11 +139,10 @@ class World:
         max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
         if not isinstance(ledger, bool | np.bool_):
             raise ValueError(f"ledger = {shown(ledger)}: must be True or False")
-        hi, lo = world_begin_call(self._bound, seconds)
         if not ledger and self._recorded is None:
-            world_advance_to(self._bound, hi, lo, max_events, ANY_BOUNCES)
+            world_advance(self._bound, seconds, 0.0, 0.0, max_events, ANY_BOUNCES)
             return None
-        pages = self._advance_to(hi, lo, max_events, keeps=ledger)
+        pages = self._advance(seconds, max_events, keeps=ledger)
         return np.concatenate([page.ledger for page in pages]) if ledger else None
 
     def advance_until(self, bounces: int, seconds: float, *, max_events: int = MAX_EVENTS) -> int:
@@ -157,8 +156,7 @@ class World:
         bounces = whole("bounces", bounces, 1, MOST_EVENTS, ">= 1, a whole number")
         max_events = whole("max_events", max_events, 1, MOST_EVENTS, ">= 1, a whole number")
         before = self.counts.bounces
-        hi, lo = world_begin_call(self._bound, real("seconds", seconds, 0.0, LARGEST, SECONDS))
-        self._advance_to(hi, lo, max_events, before + bounces)
+        self._advance(real("seconds", seconds, 0.0, LARGEST, SECONDS), max_events, before + bounces)
         return self.counts.bounces - before
 
     def command(self, name: str, value: float | bool | npt.ArrayLike) -> None:
@@ -258,18 +256,19 @@ class World:
         moments = _MOMENTS if self._is_to_be_recorded else 0
         return with_recording(state, rows=_LEDGER_ROWS * self._balls, moments=moments)
 
-    def _advance_to(
-        self, hi: float, lo: float, max_events: int, bounces: int = ANY_BOUNCES, *, keeps: bool = False
+    def _advance(
+        self, seconds: float, max_events: int, bounces: int = ANY_BOUNCES, *, keeps: bool = False
     ) -> list[Recording]:
-        """Advance to an instant; returns what was recorded on the way, page by page, where the world is recorded.
+        """Let seconds pass; returns what was recorded on the way, page by page, where the world is recorded.
 
         keeps: it is recorded for this call.
         """
         recording, pages = self._state.recording, []
-        head, code = recording.head[0], PAGE_FULL
+        head, code, hi, lo = recording.head[0], PAGE_FULL, 0.0, 0.0
         head.world = 0 if keeps or self._recorded is not None else NO_WORLD
         while code == PAGE_FULL:
-            code = world_advance_to(self._bound, hi, lo, max_events, bounces)
+            code, hi, lo = world_advance(self._bound, seconds, hi, lo, max_events, bounces)
+            seconds = GO_ON
             if head.world == 0:
                 pages.append(taken(recording))
         head.world = NO_WORLD
@@ -320,7 +319,7 @@ class World:
     def status(self) -> npt.NDArray[np.int64]:
         """The `Status` of each ball, shape (balls,) int64."""
         self._check_started()
-        return np.array([ball.status for ball in self._state.balls[0]], np.int64)
+        return self._state.balls["status"][0].copy()
 
     @property
     def counts(self) -> Counts:

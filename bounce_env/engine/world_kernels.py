@@ -13,6 +13,9 @@ from bounce_env.engine.memory.state import State
 
 Floats = npt.NDArray[np.float64]
 
+GO_ON = -1.0
+"""In place of seconds: go on with the call before."""
+
 
 @kernel
 def world_reset(state: State, position: Floats, velocity: Floats) -> None:
@@ -22,17 +25,17 @@ def world_reset(state: State, position: Floats, velocity: Floats) -> None:
 
 
 @kernel
-def world_begin_call(state: State, seconds: float) -> tuple[float, float]:
-    """Begin a call of `advance`: the instant it goes to."""
-    target: tuple[float, float] = begin_call(state, 0, seconds)
-    return target
+def world_advance(
+    state: State, seconds: float, hi: float, lo: float, max_events: int, bounces: int
+) -> tuple[int, float, float]:
+    """Advance by `seconds`, or until there have been `bounces` since reset; with GO_ON to the instant (hi, lo).
 
-
-@kernel
-def world_advance_to(state: State, hi: float, lo: float, max_events: int, bounces: int) -> int:
-    """Advance to an instant, or until there have been `bounces` since reset; see `events.loop.run`."""
+    Returns how that ended, see `events.loop.run`, and the instant to go on to: (code, hi, lo).
+    """
+    if seconds != GO_ON:
+        hi, lo = begin_call(state, 0, seconds)
     code: int = run(state, 0, hi, lo, max_events, bounces, True)
-    return code
+    return code, hi, lo
 
 
 @kernel

@@ -2,13 +2,16 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.compile.jit import function
 from bounce_env.wording import shown
+
+_FEW = 16  # numbers that are looked through faster in Python than by NumPy
+_VERY_LARGE = 2**64
 
 Controls: TypeAlias = npt.NDArray[np.float64]
 """(worlds, k): what a game's kernel reads."""
@@ -67,7 +70,7 @@ class Discrete:
         if actions.dtype.kind not in "iu":
             raise ValueError(f"actions = {shown(actions)}: must be {what}")
         numbers = actions.reshape(worlds)
-        if _unsigned(numbers).max() >= len(self.codes):
+        if _largest(numbers) >= len(self.codes):
             raise ValueError(f"actions = {shown(actions)}: each must be a whole number from 0 to {len(self.codes) - 1}")
         return self._table[numbers]
 
@@ -90,19 +93,24 @@ class Buttons:
             raise ValueError(
                 f"actions of shape {actions.shape}: must be ({worlds}, {self.count}), 0 or 1 for each button"
             )
-        if actions.dtype.kind not in "iub" or _unsigned(actions).max() > 1:
+        if actions.dtype.kind not in "iub" or _largest(actions) > 1:
             raise ValueError(f"actions = {shown(actions)}: each must be 0 or 1")
-        weighed: Controls = actions.reshape(worlds, self.count).astype(np.float64) @ self._weights
-        return weighed
+        rows = actions.reshape(worlds, self.count)
+        bits: Controls = rows.dot(self._weights)
+        return bits
 
     @cached_property
     def _weights(self) -> Controls:
         return np.exp2(np.arange(self.count, dtype=np.float64))[:, None]
 
 
-def _unsigned(numbers: npt.NDArray[np.generic]) -> npt.NDArray[np.unsignedinteger[Any]]:
-    """Return whole numbers read as unsigned ones: those below zero are then greater than any that means something."""
-    return numbers.view(f"{numbers.dtype.byteorder}u{numbers.dtype.itemsize}")
+def _largest(numbers: npt.NDArray[np.generic]) -> int:
+    """Return the largest of whole numbers; one below zero counts as a very large one."""
+    if numbers.size < _FEW:
+        values: list[int] = numbers.ravel().tolist()
+        return _VERY_LARGE if min(values) < 0 else max(values)
+    # Read as unsigned ones, those below zero are the largest that there are.
+    return int(numbers.view(f"{numbers.dtype.byteorder}u{numbers.dtype.itemsize}").max())
 
 
 Actions: TypeAlias = Continuous | Discrete | Buttons

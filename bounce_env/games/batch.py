@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.compile.jit import interpreted
+from bounce_env.engine.compile.rows import Rows
 from bounce_env.engine.memory.records import NO_WORLD, Array
 from bounce_env.engine.memory.state import State, moving_arrays, with_recording
 from bounce_env.engine.motion.readout import view
@@ -32,7 +33,7 @@ from bounce_env.games.episode import (
 from bounce_env.games.game import Game
 from bounce_env.games.kernels import reset_worlds, step_worlds
 from bounce_env.games.recorder import MOMENTS, ROWS, Origin, Recorder, Step
-from bounce_env.games.state_copy import States, check_rows, clone_rows, restore_rows
+from bounce_env.games.state_copy import States, check_states_fit
 from bounce_env.games.timing import NO_STEP_LIMIT
 from bounce_env.scene import Scene, Sensor
 from bounce_env.wording import shown
@@ -70,7 +71,12 @@ class Batch:
         self._given: dict[int, tuple[int, int | None]] = {}  # by world: its seed, and from which its user has it
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_threads": None, "_handle": None}
+        # In a copy the arrays lie elsewhere.
+        return {
+            **{name: value for name, value in self.__dict__.items() if name != "_rows"},
+            "_threads": None,
+            "_handle": None,
+        }
 
     def limit_steps(self, steps: int | None) -> None:
         """Truncate episodes after so many steps, if nothing else ends them before; None: never."""
@@ -171,12 +177,13 @@ class Batch:
 
     def clone(self, mask: Mask) -> States:
         """Return the states of the worlds of `mask`, with their streams of episodes and what the last step returned."""
-        return clone_rows(self._digest, self._rows(), mask)
+        worlds = mask.nonzero()[0]
+        return States(self._digest, self._rows.copied(worlds), self.episodes["end"][worlds] != RUNNING)
 
     def restore(self, states: States, mask: Mask) -> None:
         """Let the worlds of `mask` go on from `states`; raises ValueError as `check_states` does."""
         self.check_states(states, mask)
-        restore_rows(self._rows(), mask, states)
+        self._rows.write(mask.nonzero()[0], np.ascontiguousarray(states.data))
         if self.recorder is not None and mask[self.recorder.world]:
             self.recorder.interrupt(self.state, self._origin(self.recorder.world))
         if self.game.owns_scenes:  # world w has row w of the tables for itself, wherever its state comes from
@@ -187,11 +194,12 @@ class Batch:
 
         And, where worlds are reset in the step in which their episode ends, for states of episodes that have ended.
         """
-        check_rows(self._digest, self._rows(), mask, states)
-        if self.autoreset == SAME_STEP and states.any_ended():
+        check_states_fit(self._digest, self._rows, int(np.count_nonzero(mask)), states)
+        if self.autoreset == SAME_STEP and states.ended.any():
             raise ValueError("state of an episode that has ended: there is none to go on with in mode SAME_STEP")
 
-    def _rows(self) -> tuple[Array, ...]:
+    @cached_property
+    def _rows(self) -> Rows:
         """All arrays with a row for each world that steps read."""
         results = (array for name, array in zip(Results._fields, self.results, strict=True) if name != "busy")
         arrays = (
@@ -203,7 +211,7 @@ class Batch:
             self.counters,
             *results,
         )
-        return tuple(array for array in arrays if array is not None)
+        return Rows([array for array in arrays if array is not None and array.size])
 
     @cached_property
     def _digest(self) -> str:

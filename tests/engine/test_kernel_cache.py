@@ -19,7 +19,7 @@ from bounce_env.engine import world_kernels
 world = World(Scene(gravity=(0.0, 0.0), elements=(Wall((0.0, 0.0), (1.0, 0.0)),)))
 world.reset(position=(0.5, 1.0), velocity=(0.0, -1.0))
 world.advance(1.5)
-stats = world_kernels.world_advance_to.stats
+stats = world_kernels.world_advance.stats
 print(world.velocity[0, 1], sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
 """
 

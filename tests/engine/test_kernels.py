@@ -23,7 +23,7 @@ from bounce_env.engine import world_kernels as m
 w = World(Scene(gravity=(0.0, 0.0), elements=(Wall((0.0, 0.0), (1.0, 0.0)),)))
 w.reset(position=(0.5, 1.0), velocity=(0.0, -1.0))
 w.advance(1.5)
-print(sum(m.world_advance_to.stats.cache_hits.values()), sum(m.world_advance_to.stats.cache_misses.values()))
+print(sum(m.world_advance.stats.cache_hits.values()), sum(m.world_advance.stats.cache_misses.values()))
 print(w.velocity[0, 1])
 """
 
@@ -79,7 +79,7 @@ def test_scenes_of_one_feature_set_share_a_kernel() -> None:
         world.reset(position=(0.5, 1.0), velocity=(0.0, 0.0))
         world.advance(0.5)
         assert np.isfinite(world.position).all()
-        return len(world_kernels.world_advance_to.signatures)  # type: ignore[attr-defined]
+        return len(world_kernels.world_advance.signatures)  # type: ignore[attr-defined]
 
     first = signatures_after([*walls[:1], *bumpers[:1]])
     assert signatures_after([*walls, *bumpers]) == first

@@ -238,7 +238,7 @@ def test_bad_options(options, message):
     before = env.unwrapped.clone_state()
     with pytest.raises(ValueError, match=message):
         env.reset(options=options)
-    assert_same(env.unwrapped.clone_state().arrays, before.arrays)
+    assert_same(env.unwrapped.clone_state().data, before.data)
 
 
 def test_a_place_on_a_level_is_checked_against_its_bumpers():

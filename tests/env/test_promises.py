@@ -335,7 +335,7 @@ def test_worlds_of_a_copy_are_its_own(copied):
     other = copied(envs)
     assert other.get_attr("stage") == (4, 4)
     other.worlds[0].reset(seed=77)
-    assert_same(envs.worlds[0].clone_state().arrays, envs.clone_state()[:1].arrays)
+    assert_same(envs.worlds[0].clone_state().data, envs.clone_state()[:1].data)
     assert not np.array_equal(other.step(np.zeros((2, 1)))[0][0], envs.step(np.zeros((2, 1)))[0][0])
 
 

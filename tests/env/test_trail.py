@@ -198,7 +198,7 @@ def test_looking_at_bounces_changes_no_bit_of_the_play():
         assert_same(one, other)
         if one[2]:
             break
-    assert_same(env.clone_state().arrays, plain.clone_state().arrays)
+    assert_same(env.clone_state().data, plain.clone_state().data)
 
 
 def test_a_picture_needs_a_reset():

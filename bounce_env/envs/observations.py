@@ -14,6 +14,7 @@ from bounce_env.engine.compile.binding import bind
 from bounce_env.engine.memory.records import OUT, Array
 from bounce_env.engine.memory.state import State, copy_of_world
 from bounce_env.engine.motion.readout import view
+from bounce_env.envs.observed_frames import ObservedFrames
 from bounce_env.envs.trail import Flight, Trail
 from bounce_env.games.batch import Batch
 from bounce_env.games.options import CONFIG, options_class, refuse
@@ -50,8 +51,9 @@ class ViewOptions(Spec):
     """What a user may choose of what is seen. Raises ValueError for what is not allowed.
 
     obs: "state" or "pixels", what an agent is given. width, height: of rendered frames in pixels; see `Projection.fit`
-    for what is left out. obs_width, obs_height: of frames that an agent is given. trail: seconds of the ball's way that
-    are drawn. show_bounces: whether `render` shows the last bounce of a step in place of the step's end.
+    for what is left out. obs_width, obs_height: of frames that an agent is given; grayscale: in grey. trail: seconds of
+    the ball's way that are drawn. show_bounces: whether `render` shows the last bounce of a step in place of the step's
+    end.
     """
 
     obs: Annotated[Literal["state", "pixels"], one_of("state", "pixels")] = "state"
@@ -59,6 +61,7 @@ class ViewOptions(Spec):
     height: Side = None
     obs_width: Side = None
     obs_height: Side = None
+    grayscale: Annotated[bool, Allowed("True or False", true_or_false)] = False
     trail: Seconds = 0.0
     show_bounces: Annotated[bool, Allowed("True or False", true_or_false)] = False
 
@@ -67,6 +70,8 @@ class ViewOptions(Spec):
         for name in ("obs_width", "obs_height"):
             if self.obs == "state" and getattr(self, name) is not None:
                 refuse(name, getattr(self, name), 'None where obs is "state": width and height are those of `render`')
+        if self.obs == "state" and self.grayscale:
+            refuse("grayscale", True, 'False where obs is "state"')
         return self
 
 
@@ -80,13 +85,13 @@ class Frames:
         bounds = view_box(batch.game.scenes[0])
         fit = Projection.fit(bounds, options.width, options.height)
         self.size = (fit.width, fit.height)
-        self._pixels: Pixels | None = None
+        self._seen: ObservedFrames | None = None
         self._observed = self.size
         if options.obs == "pixels":
             asked = (options.obs_width, options.obs_height)
             seen = Projection.fit(bounds, *((OBSERVED_SIZE, OBSERVED_SIZE) if asked == (None, None) else asked))
             self._observed = (seen.width, seen.height)
-            self._pixels = np.zeros((batch.worlds, seen.height, seen.width, 3), np.uint8)
+            self._seen = ObservedFrames(batch, seen.width, seen.height, grey=options.grayscale)
         self._batch = batch
         self._trail = options.trail
         self._show_bounces = options.show_bounces
@@ -101,24 +106,26 @@ class Frames:
     def space(self) -> spaces.Box:
         """Of one world's observation; the bounds of a state come from the physics, nothing is clipped to them."""
         game = self._batch.game
-        if self._pixels is None:
+        if self._seen is None:
             return spaces.Box(game.observation_low, game.observation_high, dtype=np.float32)
-        return spaces.Box(0, 255, self._pixels.shape[1:], np.uint8)
+        return spaces.Box(0, 255, self._seen.frames.shape[1:], np.uint8)
 
     @property
     def observations(self) -> Array:
-        """What agents see now: (worlds, size) float32, or (worlds, height, width, 3) uint8; overwritten by `update`."""
-        return self._batch.results.observations if self._pixels is None else self._pixels
+        """What agents see now: (worlds, size) float32, or (worlds, height, width, c) uint8; overwritten by `update`."""
+        return self._batch.results.observations if self._seen is None else self._seen.frames
 
     def update(self, worlds: Iterable[int]) -> None:
         """Some worlds have been reset or stepped: their balls have gone on, and their observations are drawn anew."""
-        if not self._trails and self._pixels is None:
+        if not self._trails and self._seen is None:
             return
-        for w in worlds:
-            if self._trails:
-                self._go_on(w)
-            if self._pixels is not None:
-                self._pixels[w] = self._drawn(w, self._picture(w, at_bounce=False, score=False), self._observed)
+        rows = np.fromiter(worlds, np.intp)
+        if not self._trails and self._seen is not None:
+            self._seen.draw(rows)
+        for w in rows.tolist() if self._trails else ():
+            self._go_on(w)
+            if self._seen is not None:
+                self._seen.show(w, self._drawn(w, self._picture(w, at_bounce=False, score=False), self._observed))
 
     def restart(self, worlds: Iterable[int]) -> None:
         """Some worlds go on from another state: what is known of the ways that their balls have come is not theirs."""
@@ -170,7 +177,7 @@ class Frames:
             hits=shown.hits[row, : len(scene.elements)].copy(),
             lit=None if batch.memory is None else batch.game.lamps(batch.memory[w]),
             score=float(batch.episodes[w].score) if score else None,
-            targets=batch.target_places(w),
+            targets=batch.target_places(np.array([w]))[0],
             trail=self._trails[w].until(float(world.time_hi + world.time_lo)) if self._trails else None,
         )
 

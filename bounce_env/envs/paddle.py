@@ -35,8 +35,9 @@ class PaddleEnv(BounceEnv):
     rails. Of one on a rail there are eight numbers: x, y now, velocity x, y in units of 0.4 m/s, and x, y of both ends
     of its rail. The built-in levels have 14 in all: three bumpers of two, one of eight.
 
-    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), 84 x 84
-    where no size is given. One frame does not tell how fast the ball is: stack some, or ask for a `trail`.
+    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), or with
+    `grayscale` (obs_height, obs_width, 1), 84 x 84 where no size is given. One frame does not tell how fast the ball
+    is: stack some, or ask for a `trail`.
 
     Levels: with `num_levels` each episode is played on one of so many levels, from `start_level` on, which its seed
     chooses; 0 stands for all of the 2^31. A level is a number from which follows where its bumpers are: anywhere in the
@@ -64,10 +65,10 @@ class PaddleEnv(BounceEnv):
     ("score"), `gamma` (0.99, of the dense reward), `frame_skip` (2, in units of 1/60 s), `repeat_action_probability`
     (0.0, per 1/60 s), `time_limit` (120.0 s, None for none), `obs` ("state", "pixels"), `render_mode` (None,
     "rgb_array", "human"), `width`, `height` (of a rendered frame, pixels), `obs_width`, `obs_height` (of an observed
-    one), `trail` (0.0; seconds of the ball's way, bounces included, that a frame shows, fading), `show_bounces` (False;
-    whether `render` shows, after a step with bounces, the last of them in place of the step's end), `record_events`
-    (False; whether `replay` has what happens). A vector env also takes `num_envs`, `max_episode_steps`, `num_threads`
-    (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info` ("all").
+    one), `grayscale` (False), `trail` (0.0; seconds of the ball's way, bounces included, that a frame shows, fading),
+    `show_bounces` (False; whether `render` shows, after a step with bounces, the last of them in place of the step's
+    end), `record_events` (False; whether `replay` has what happens). A vector env also takes `num_envs`,
+    `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info` ("all").
 
     Versions: v0, first release.
     """

@@ -57,9 +57,10 @@ class PinballEnv(BounceEnv):
     | tilt meter over 3, 1: tilted; time until the next nudge over 0.25 s; only with `nudge` | [0, 1] |
     | each button that is in force, only where actions are sticky | {0, 1} |
 
-    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), 84 x 84
-    where no size is given. One frame does not tell how fast the ball is (stack some, or ask for a `trail`), and none
-    tells what only clocks and counters know: balls left, ball save, hold timer, multiplier, cooldowns, tilt.
+    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), or with
+    `grayscale` (obs_height, obs_width, 1), 84 x 84 where no size is given. One frame does not tell how fast the ball is
+    (stack some, or ask for a `trail`), and none tells what only clocks and counters know: balls left, ball save, hold
+    timer, multiplier, cooldowns, tilt.
 
     Reward: points / 1000, and -2 for every ball that is lost ("dense"). With `reward="score"` points / 1000 alone.
 
@@ -82,11 +83,11 @@ class PinballEnv(BounceEnv):
     file says what a table must have), `action` ("discrete"), `reward` ("dense"), `nudge` (False), `balls` (3),
     `frame_skip` (2, in units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (120.0 s, None for
     none), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a rendered
-    frame, pixels), `obs_width`, `obs_height` (of an observed one), `trail` (0.0; seconds of the ball's way, bounces
-    included, that a frame shows, fading), `show_bounces` (False; whether `render` shows, after a step with bounces, the
-    last of them in place of the step's end), `record_events` (False; whether `replay` has what happens). A vector env
-    also takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info`
-    ("all").
+    frame, pixels), `obs_width`, `obs_height` (of an observed one), `grayscale` (False), `trail` (0.0; seconds of the
+    ball's way, bounces included, that a frame shows, fading), `show_bounces` (False; whether `render` shows, after a
+    step with bounces, the last of them in place of the step's end), `record_events` (False; whether `replay` has what
+    happens). A vector env also takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP),
+    `copy` (True), `info` ("all").
 
     Versions: v0, first release.
     """

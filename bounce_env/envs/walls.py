@@ -31,8 +31,9 @@ class WallsEnv(BounceEnv):
     | 11 | balls left, this one included, over `balls` | [0, 1] |
     | 12 to 15 | the action in force, only where actions are sticky | [-1, 1] |
 
-    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), 84 x 84
-    where no size is given. One frame does not tell how fast the ball is: stack some, or ask for a `trail`.
+    With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), or with
+    `grayscale` (obs_height, obs_width, 1), 84 x 84 where no size is given. One frame does not tell how fast the ball
+    is: stack some, or ask for a `trail`.
 
     Reward: 1 for each target ("sparse"). With `reward="dense"` besides, in every step, gamma Phi(s') - Phi(s), where
     Phi = -(distance from the ball to its target) / (diagonal of the field), and 0 when the last ball has been played:
@@ -60,10 +61,10 @@ class WallsEnv(BounceEnv):
     says what one must have), `reward` ("sparse"), `gamma` (0.99, of the dense reward), `balls` (5), `frame_skip` (2, in
     units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (90.0 s, None for none; the balls' 8 s
     end an episode sooner), `obs` ("state"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a
-    rendered frame, pixels), `obs_width`, `obs_height` (of an observed one), `trail` (0.0, seconds of the ball's way
-    that frames show), `show_bounces` (False: a frame shows the end of a step; True: the last bounce in it),
-    `record_events` (False; whether `replay` has what happens). A vector env also takes `num_envs`, `max_episode_steps`,
-    `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info` ("all").
+    rendered frame, pixels), `obs_width`, `obs_height` (of an observed one), `grayscale` (False), `trail` (0.0, seconds
+    of the ball's way that frames show), `show_bounces` (False: a frame shows the end of a step; True: the last bounce
+    in it), `record_events` (False; whether `replay` has what happens). A vector env also takes `num_envs`,
+    `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info` ("all").
 
     Versions: v0, first release.
     """

@@ -251,7 +251,9 @@ class Batch:
     def scene(self, world: int) -> Scene:
         """Return the scene that a world plays now."""
         scene = self.game.scene_on(None if self.levels is None else int(self.levels[world]))
-        places = dict(zip(self.game.targets, map(tuple, self.target_places(world).tolist()), strict=True))
+        places = dict(
+            zip(self.game.targets, map(tuple, self.target_places(np.array([world]))[0].tolist()), strict=True)
+        )
         elements = (
             replace(e, center=places[i]) if i in places and isinstance(e, Sensor) else e
             for i, e in enumerate(scene.elements)
@@ -262,13 +264,13 @@ class Batch:
         """Return what a player of a world wants to know beside picture and score, in words."""
         return self.game.status(self.episodes[world], None if self.memory is None else self.memory[world])
 
-    def target_places(self, world: int) -> npt.NDArray[np.float64]:
-        """Return the centres of the game's `targets` in a world now, (n, 2) [m]."""
+    def target_places(self, worlds: npt.NDArray[np.intp]) -> npt.NDArray[np.float64]:
+        """Return the centres of the game's `targets` in some worlds (n,) now, (n, targets, 2) [m]."""
         if not self.game.targets or self.state.circle_sensors is None:
-            return np.zeros((0, 2))
-        rings = self.state.circle_sensors[self.state.worlds["scene"][world]]
-        rows = [int(np.flatnonzero(rings["element"] == index)[0]) for index in self.game.targets]
-        return np.stack([rings["x"][rows], rings["y"][rows]], axis=1)
+            return np.zeros((len(worlds), 0, 2))
+        rings = self.state.circle_sensors[self.state.worlds["scene"][worlds]]
+        rows = [int(np.flatnonzero(rings["element"][0] == index)[0]) for index in self.game.targets]
+        return np.stack([rings["x"][:, rows], rings["y"][:, rows]], axis=2)
 
     def close(self) -> None:
         """End the threads."""

@@ -64,7 +64,10 @@ class Game:
         return self.scenes[0]
 
     def lamps(self, memory: Any) -> npt.NDArray[np.bool_] | None:
-        """Return which elements are lit in a world of which the rules remember this; None: the game has no lamps."""
+        """Return which elements are lit where the rules remember this; None: the game has no lamps.
+
+        memory: a record of `memory`, of one world; or an array of them (worlds, 1), which gives (worlds, elements).
+        """
         return None
 
     def status(self, episode: Any, memory: Any) -> tuple[str, ...]:

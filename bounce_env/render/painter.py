@@ -54,9 +54,18 @@ class Overlay:
         self._image: pygame.Surface | None = None
 
     def draw(self, target: pygame.Surface) -> None:
+        _stamp(target, self._drawn(), self._area.topleft)
+
+    def picture(self) -> tuple[int, int, Pixels]:
+        """Left, top, and pixels (height, width, 4): red, green, blue, multiplied by the opacity, and that."""
+        image = self._drawn()
+        pixels = np.frombuffer(pygame.image.tobytes(image, "RGBA"), np.uint8)
+        return self._area.left, self._area.top, pixels.reshape(image.get_height(), image.get_width(), 4)
+
+    def _drawn(self) -> pygame.Surface:
         if self._image is None:
             self._image = _rasterised(self._look, self._area)
-        _stamp(target, self._image, self._area.topleft)
+        return self._image
 
 
 class Sprite:

@@ -65,6 +65,18 @@ class Renderer:
         inked = np.abs(self._background.astype(np.int16) - blank).sum(axis=2) > 0
         self._label = painter.Label(*_label_place(scene, self.projection, inked))
 
+    @property
+    def background(self) -> npt.NDArray[np.uint8]:
+        """What stands, at rest, (height, width, 3)."""
+        return self._background
+
+    def flashes(self) -> dict[int, tuple[int, int, npt.NDArray[np.uint8]]]:
+        """Return what lies over each element that stands when it lights up: left, top, and the picture.
+
+        The picture is (height, width, 4), colours multiplied by their opacity, which is the last of the four.
+        """
+        return {i: flash.picture() for i, flash in self._flashes.items()}
+
     def frame(self, picture: Picture) -> npt.NDArray[np.uint8]:
         """Return a new C-contiguous array of RGB pixels, shape (height, width, 3), rows from the top.
 

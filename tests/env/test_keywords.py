@@ -34,6 +34,7 @@ COMMON = {
     "height": (None, 90),
     "obs_width": (None, 40),
     "obs_height": (None, 80),
+    "grayscale": (False, True),
     "trail": (0.0, 0.3),
     "show_bounces": (False, True),
     "max_episode_steps": (None, 6),
@@ -76,6 +77,8 @@ def impossible(keywords) -> str | None:
         return "obs_width"
     if keywords["obs"] == "state" and keywords["obs_height"] is not None:
         return "obs_height"
+    if keywords["obs"] == "state" and keywords["grayscale"]:
+        return "grayscale"
     if keywords.get("start_level") and keywords["num_levels"] is None:
         return "start_level"
     return None

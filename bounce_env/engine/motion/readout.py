@@ -60,3 +60,10 @@ def view_world(state: State, w: int, balls: Array, cores: Array) -> None:
 def view(state: State, w: int, balls: Array, cores: Array) -> None:
     """As `view_world`, from Python."""
     view_world(state, w, balls, cores)
+
+
+@kernel
+def view_worlds(state: State, worlds: Array, balls: Array, cores: Array) -> None:
+    """Write the same of several worlds, (n,): into balls (n, k, 4) and cores (n, m, 4)."""
+    for i in range(worlds.shape[0]):
+        view_world(state, worlds[i], balls[i], cores[i])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from bounce_env.engine.compile.jit import from_python
+from bounce_env.engine.memory.cells import Cells, Grid, cells_of, padded_cells
 from bounce_env.engine.memory.records import (
     ARC,
     CIRCLE,
@@ -33,6 +34,7 @@ sin_cos = from_python(compiled_sin_cos)
 Row = tuple[float, ...]
 Point = tuple[float, float]
 
+_NO_CELLS = {"grids": None, "cell_starts": None, "cell_circles": None, "cell_entries": None}
 _NO_BOX = (0.0, 0.0, 0.0, 0.0)
 _ANGLE_MARGIN = 1e-9  # in a box an angle is taken to be reached that is missed by so little [rad, or turns]
 
@@ -51,6 +53,8 @@ def pack(
     Raises ValueError when some scenes have point balls and others discs: those are different kernels.
     """
     present = features_of_worlds(scenes, balls) | features
+    if own_rows:  # who moves what stands would have to sort it anew
+        present -= {Feature.CELLS}
     tables = _packed_tables(scenes, present)
     if own_rows:
         tables = {name: None if t is None else np.repeat(t, worlds, axis=0) for name, t in tables.items()}
@@ -117,7 +121,13 @@ def _packed_tables(scenes: Sequence[Scene], present: frozenset[Feature]) -> dict
             for feature, (name, dtype, rows_of) in row_makers.items()
         },
         **{name: table() if feature in present else None for feature, (name, table) in others.items()},
+        **(padded_cells([_cells(scene) for scene in scenes]) if Feature.CELLS in present else _NO_CELLS),
     }
+
+
+def _cells(scene: Scene, disabled: Collection[int] = (), grid: Grid | None = None) -> Cells:
+    faces, circles = np.array(_pack_faces(scene), FACE), np.array(_pack_circles(scene, disabled), CIRCLE)
+    return cells_of(faces, circles, scene_extent(scene), grid)
 
 
 def scene_extent(scene: Scene) -> float:
@@ -199,6 +209,10 @@ def switch_round_ends(state: State, scene: Scene, disabled: Collection[int]) -> 
     rows = _pack_circles(scene, disabled)
     state.circles[0, : len(rows)] = rows
     state.scenes[0]["circles"] = len(rows)
+    if state.grids is not None:
+        cells = _cells(scene, disabled, state.grids[0].item())
+        state.cell_starts[0, : len(cells.starts)], state.cell_circles[0, : len(cells.circles)] = cells[1:3]
+        state.cell_entries[0, : len(cells.entries)] = cells.entries
 
 
 def _pack_circles(scene: Scene, disabled: Collection[int] = ()) -> list[Row]:

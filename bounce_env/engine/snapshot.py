@@ -13,7 +13,7 @@ from bounce_env.engine.memory.state import State, moving_arrays
 from bounce_env.scene import Scene
 from bounce_env.wording import shown
 
-VERSION = 8
+VERSION = 9
 _MAGIC = b"bounce_env world"
 _HEAD = struct.Struct("<16sI32s")
 _CHECKSUM = 32

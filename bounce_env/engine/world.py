@@ -65,6 +65,7 @@ class World:
         self._forced = forced_features(scene, features) | {Feature.SWITCHES}
         self._is_to_be_recorded = False
         self._state = self._packed(scene)
+        self._ends_without: list[int] = []  # the elements that were off when the tables of round ends were written
         self._bound = bind(self._state)
         self._parts = scene.parts
         self._started = False
@@ -246,6 +247,7 @@ class World:
         for m in range(len(scene.parts)):
             world_resume_part(bound, m)
         self.scene, self._state, self._bound, self._parts = scene, state, bound, scene.parts
+        self._ends_without = []
         self._recorded = None
 
     def _packed(self, scene: Scene) -> State:
@@ -335,7 +337,10 @@ class World:
     def _switch_ends(self) -> None:
         """An end that several elements share is, when the first of them is switched off, that of the next one."""
         assert self._state.disabled is not None
-        switch_round_ends(self._state, self.scene, np.flatnonzero(self._state.disabled[0]).tolist())
+        disabled = np.flatnonzero(self._state.disabled[0]).tolist()
+        if disabled != self._ends_without:
+            switch_round_ends(self._state, self.scene, disabled)
+            self._ends_without = disabled
 
     def _cores(self) -> dict[int, Core]:
         return _cores_by_index(self.scene, self._now()[1])

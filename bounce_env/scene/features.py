@@ -20,6 +20,7 @@ class Feature(StrEnum):
     ONE_WAY_WALLS = "one_way_walls"
     CIRCLES = "circles"  # bumpers that stand, and for a disc the ends of walls and arcs
     ARCS = "arcs"
+    CELLS = "cells"  # so many walls and circles that a flight does not ask them all
     CURVED_CONTACT = "curved_contact"  # something round that can hold a ball: it slides there
     LINE_SENSORS = "line_sensors"
     CIRCLE_SENSORS = "circle_sensors"
@@ -35,6 +36,9 @@ class Feature(StrEnum):
 
 ALL_FEATURES = frozenset(Feature) - {Feature.BALL_RADIUS}
 """All that can be forced on: with these every scene runs on one kernel for discs and one for points."""
+
+MOST_WITHOUT_CELLS = 256
+"""Walls and circles that stand, of a scene of which they are all asked."""
 
 ALL_FOR_ONE_BALL = ALL_FEATURES - {Feature.SEVERAL_BALLS}
 """The same where no scene is played with several balls: what lets balls lie on each other doubles the compiling."""
@@ -62,12 +66,26 @@ def features_of(
     found |= {Feature.BALL_RADIUS} if disc else set()
     found |= {Feature.GRAVITY} if any(gravity) else set()
     found |= {Feature.DRAG} if drag < 1.0 else set()
+    shapes = sum(_standing_shapes(element, disc) for element in elements)
+    found |= {Feature.CELLS} if shapes > MOST_WITHOUT_CELLS else set()
     present = with_what_they_bring(found)
     # Without gravity only the inside of an arc holds a ball.
     round_outside = Feature.CIRCLES in present or any(moves(e) and (disc or not isinstance(e, Wall)) for e in elements)
     if Feature.ARCS in present or (Feature.GRAVITY in present and round_outside):
         present |= {Feature.CURVED_CONTACT}
     return present
+
+
+def _standing_shapes(element: Element, disc: bool) -> int:
+    """Return how many walls and circles an element is: for a disc each end is one, which others may share."""
+    match element:
+        case Wall() if not moves(element):
+            return 3 if disc and not element.one_way else 1
+        case Arc() if disc and not element.closed:
+            return 2
+        case Bumper() if not moves(element):
+            return 1
+    return 0
 
 
 def _of_element(element: Element, disc: bool) -> Iterator[Feature]:

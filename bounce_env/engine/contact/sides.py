@@ -9,7 +9,7 @@ from bounce_env.engine.compile.jit import Record, Table, function, where
 from bounce_env.engine.detect.surfaces import face_line, surface_normal
 from bounce_env.engine.impact.grazing import bending
 from bounce_env.engine.impact.line import leaves_line_end
-from bounce_env.engine.memory.lookup import is_off
+from bounce_env.engine.memory.lookup import face_near, faces_near, is_off
 from bounce_env.engine.memory.records import CLOSED, NEXT_HIT, NEXT_PART, OFF_END, ON_CURVE, ON_JOINT
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.dragged_wall import height_over_dragged_wall
@@ -59,12 +59,27 @@ def _side_after_flight(
 def _update_faces(state: State, w: int, k: int, start: Flight, t: float) -> None:
     ball, scene, sides = state.balls[w, k], state.worlds[w].scene, state.face_sides
     slow = ULPS_OF_SPEED * (abs(ball.vx) + abs(ball.vy))
-    for i in range(state.scenes[scene].faces):
+    first, last = faces_near(state, scene, ball.x, ball.y)
+    for at in range(first, last):
+        i = face_near(state, scene, at)
         line = state.faces[scene, i]
         height = (ball.y - line.y) * line.ux - (ball.x - line.x) * line.uy
         height0 = (start.y - line.y) * line.ux - (start.x - line.x) * line.uy
         rate, rate0 = ball.vy * line.ux - ball.vx * line.uy, start.vy * line.ux - start.vx * line.uy
-        sides[w, k, i] = _side_after_flight(height, rate, height0, rate0, t, slow, ball.tolerance, sides[w, k, i])
+        side = _side_at_start(state, height0, ball.tolerance, sides[w, k, i])
+        sides[w, k, i] = _side_after_flight(height, rate, height0, rate0, t, slow, ball.tolerance, side)
+
+
+def _known_side(state: State, height: float, tolerance: float, side: int) -> int:
+    return side
+
+
+@where("grids", otherwise=_known_side)
+def _side_at_start(state: State, height: float, tolerance: float, side: int) -> int:
+    """Return on which side of a wall a ball was: events bring up to date only those of walls that are near."""
+    if abs(height) > tolerance:
+        return 1 if height > 0.0 else -1
+    return side
 
 
 @where("arc_sides")
@@ -116,7 +131,9 @@ def _face_left_at_end(state: State, w: int, k: int) -> int:
     if ball.next_kind != NEXT_PART and ball.hit_kind == OFF_END:
         return ball.hit_index
     now = Flight(ball.x, ball.y, ball.vx, ball.vy, None, None)
-    for i in range(state.scenes[scene].faces):
+    first, last = faces_near(state, scene, ball.x, ball.y)
+    for at in range(first, last):
+        i = face_near(state, scene, at)
         face = state.faces[scene, i]
         leaves = leaves_line_end(flight_seen_from(now, face.x, face.y), face_line(face), ball.tolerance)
         if leaves and not is_off(state, w, face.element):
@@ -139,7 +156,9 @@ def _turn_about_end(state: State, w: int, k: int, left: int, nx: float, ny: floa
 @where("face_sides")
 def _turn_to_faces(state: State, w: int, k: int, left: int, turn: float) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    for i in range(state.scenes[scene].faces):
+    first, last = faces_near(state, scene, ball.x, ball.y)
+    for at in range(first, last):
+        i = face_near(state, scene, at)
         face = state.faces[scene, i]
         dx, dy = ball.x - face.x, ball.y - face.y
         if i == left or abs(dy * face.ux - dx * face.uy) > ball.tolerance:

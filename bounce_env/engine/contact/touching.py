@@ -10,7 +10,16 @@ from bounce_env.engine.contact.restitution import closing_speed, is_standing
 from bounce_env.engine.detect.surfaces import face_line
 from bounce_env.engine.impact.arc import is_in_arc_span
 from bounce_env.engine.impact.line import is_beside_line
-from bounce_env.engine.memory.lookup import is_off, is_one_way, side_of_part, side_on
+from bounce_env.engine.memory.lookup import (
+    circle_near,
+    circles_near,
+    face_near,
+    faces_near,
+    is_off,
+    is_one_way,
+    side_of_part,
+    side_on,
+)
 from bounce_env.engine.memory.records import CLOSED
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.parts import (
@@ -83,7 +92,9 @@ def _add_touch(
 @where("faces")
 def _touch_faces(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    for i in range(state.scenes[scene].faces):
+    first, last = faces_near(state, scene, ball.x, ball.y)
+    for at in range(first, last):
+        i = face_near(state, scene, at)
         face = state.faces[scene, i]
         dx, dy = ball.x - face.x, ball.y - face.y
         height = dy * face.ux - dx * face.uy
@@ -108,8 +119,9 @@ def _touch_faces(state: State, w: int, k: int) -> None:
 @where("circles")
 def _touch_circles(state: State, w: int, k: int) -> None:
     ball, scene = state.balls[w, k], state.worlds[w].scene
-    for i in range(state.scenes[scene].circles):
-        circle = state.circles[scene, i]
+    first, last = circles_near(state, scene, ball.x, ball.y)
+    for at in range(first, last):
+        circle = state.circles[scene, circle_near(state, scene, at)]
         dx, dy = ball.x - circle.x, ball.y - circle.y
         offset_radius = circle.offset_radius + ball.tolerance
         square = dx * dx + dy * dy

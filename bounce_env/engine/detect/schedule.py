@@ -10,15 +10,14 @@ import math
 from bounce_env.engine.compile.jit import Record, function, routine, where
 from bounce_env.engine.detect.along_curve import first_along_curve
 from bounce_env.engine.detect.by_advancement import first_by_advancement
+from bounce_env.engine.detect.cells import first_face_or_circle
 from bounce_env.engine.detect.crossings_along_curve import next_crossing_along
 from bounce_env.engine.detect.crossings_by_advancement import next_crossing_by_advancement
 from bounce_env.engine.detect.parts import plan_part_hits, plan_part_zones, way_off_part
 from bounce_env.engine.detect.sensors import Crossing, next_crossing
 from bounce_env.engine.detect.surfaces import (
     first_arc,
-    first_circle,
     first_end,
-    first_face,
     first_joint,
     surface_normal,
 )
@@ -92,9 +91,8 @@ def _schedule_standing_in_flight(state: State, w: int, k: int) -> None:
     if ball.contact in (RIDING, ON_BALLS):
         nx, ny = ball.nx, ball.ny
     after = flight_time_in_scene(flight, state.scenes[state.worlds[w].scene].extent)
-    after, face = first_face(state, w, k, flight, nx, ny, after)
+    after, face, circle = first_face_or_circle(state, w, k, flight, nx, ny, after)
     ball.hit_kind, ball.hit_index = ON_FACE, face
-    after, circle = first_circle(state, w, k, flight, nx, ny, after)
     if circle >= 0:
         ball.hit_kind, ball.hit_index = ON_CIRCLE, circle
     after, arc = first_arc(state, w, k, flight, nx, ny, after)

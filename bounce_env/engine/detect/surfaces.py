@@ -7,7 +7,7 @@ from bounce_env.engine.impact.arc import arc_time
 from bounce_env.engine.impact.circle import circle_time
 from bounce_env.engine.impact.line import Line, face_time, facing_time, is_beside_line, leaves_line_end
 from bounce_env.engine.impact.swept_box import box_of, circle_box, misses_box, sweep_of
-from bounce_env.engine.memory.lookup import is_off, is_one_way, is_sliding, side_on
+from bounce_env.engine.memory.lookup import face_near, faces_near, is_off, is_one_way, is_sliding, side_on
 from bounce_env.engine.memory.records import CLOSED, LEANS, RIDING
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import (
@@ -88,31 +88,43 @@ def _no_standing_surface(
     return horizon, -1
 
 
-@where("faces", otherwise=_no_standing_surface)
-def first_face(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float) -> tuple[float, int]:
-    """Return the earliest hit of a wall's straight part before `horizon` [s]: (duration, face), -1 for none.
+def _no_hit(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, i: int, horizon: float) -> float:
+    return math.inf
 
-    (nx, ny) is the normal of what the ball slides on, (0, 0) in flight.
-    """
+
+@where("faces", otherwise=_no_hit)
+def face_hit(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, i: int, horizon: float) -> float:
+    """Return the hit of the straight part of wall `i`, up to `horizon` [s], or inf; as `first_one_by_one`."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
+    face = state.faces[scene, i]
+    if is_off(state, w, face.element):
+        return math.inf
+    if is_sliding(ball) and (i == ball.contact or _is_level_on_face(ball, flight, face)):
+        return math.inf
+    if _is_left_to_cluster(
+        state, w, ball, abs(_height_over(ball, face)) - face.offset_radius, ball.vy * face.ux - ball.vx * face.uy
+    ):
+        return math.inf
+    from_start, side = flight_seen_from(flight, face.x, face.y), side_on(state.face_sides, w, k, i)
+    if is_one_way(state, scene, i):
+        t = facing_time(from_start, face_line(face), 1.0, side, ball.tolerance, horizon)
+    else:
+        t = face_time(from_start, face_line(face), side, ball.tolerance, horizon)
+    return math.inf if t <= horizon and _slides_over_face_end(ball, flight, face, nx, ny, t) else t
+
+
+@where("faces", otherwise=_no_standing_surface)
+def _first_face(
+    state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float
+) -> tuple[float, int]:
+    scene = state.worlds[w].scene
     extent, best, index = state.scenes[scene].extent, horizon, -1
     sweep = sweep_of(flight, extent, horizon)
     for i in range(state.scenes[scene].faces):
-        face = state.faces[scene, i]
-        if misses_box(flight, sweep, box_of(face)) or is_off(state, w, face.element):
+        if misses_box(flight, sweep, box_of(state.faces[scene, i])):
             continue
-        if is_sliding(ball) and (i == ball.contact or _is_level_on_face(ball, flight, face)):
-            continue
-        if _is_left_to_cluster(
-            state, w, ball, abs(_height_over(ball, face)) - face.offset_radius, ball.vy * face.ux - ball.vx * face.uy
-        ):
-            continue
-        from_start, side = flight_seen_from(flight, face.x, face.y), side_on(state.face_sides, w, k, i)
-        if is_one_way(state, scene, i):
-            t = facing_time(from_start, face_line(face), 1.0, side, ball.tolerance, best)
-        else:
-            t = face_time(from_start, face_line(face), side, ball.tolerance, best)
-        if t < best and not _slides_over_face_end(ball, flight, face, nx, ny, t):
+        t = face_hit(state, w, k, flight, nx, ny, i, best)
+        if t < best:
             best, index, sweep = t, i, sweep_of(flight, extent, t)
     return best, index
 
@@ -134,32 +146,51 @@ def _slides_past_circle(ball: Record, nx: float, ny: float, x: float, y: float, 
     return is_sliding(ball) and x * nx + y * ny >= offset_radius - ball.tolerance
 
 
+@where("circles", otherwise=_no_hit)
+def circle_hit(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, i: int, horizon: float) -> float:
+    """Return the hit of bumper or end `i`, up to `horizon` [s], or inf; as `first_one_by_one`."""
+    ball, circle = state.balls[w, k], state.circles[state.worlds[w].scene, i]
+    seen = flight_seen_from(flight, circle.x, circle.y)
+    if _is_circle_left_to_cluster(state, w, ball, seen, circle.offset_radius):
+        return math.inf
+    if is_off(state, w, circle.element) or _slides_past_circle(ball, nx, ny, seen.x, seen.y, circle.offset_radius):
+        return math.inf
+    return circle_time(seen, circle.offset_radius, ball.tolerance, horizon)
+
+
 @where("circles", otherwise=_no_standing_surface)
-def first_circle(
+def _first_circle(
     state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float
 ) -> tuple[float, int]:
-    """Return the earliest hit of a bumper or an end before `horizon` [s]; as `first_face`."""
-    ball, scene = state.balls[w, k], state.worlds[w].scene
+    scene = state.worlds[w].scene
     extent, best, index = state.scenes[scene].extent, horizon, -1
     sweep = sweep_of(flight, extent, horizon)
     for i in range(state.scenes[scene].circles):
         circle = state.circles[scene, i]
         if misses_box(flight, sweep, circle_box(circle.x, circle.y, circle.offset_radius)):
             continue
-        seen = flight_seen_from(flight, circle.x, circle.y)
-        if _is_circle_left_to_cluster(state, w, ball, seen, circle.offset_radius):
-            continue
-        if is_off(state, w, circle.element) or _slides_past_circle(ball, nx, ny, seen.x, seen.y, circle.offset_radius):
-            continue
-        t = circle_time(seen, circle.offset_radius, ball.tolerance, best)
+        t = circle_hit(state, w, k, flight, nx, ny, i, best)
         if t < best:
             best, index, sweep = t, i, sweep_of(flight, extent, t)
     return best, index
 
 
+@function
+def first_one_by_one(
+    state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float
+) -> tuple[float, int, int]:
+    """Return the earliest hit of a wall's straight part, a bumper or an end before `horizon` [s].
+
+    As (duration, face, circle), -1 for none. (nx, ny) is the normal of what the ball slides on, (0, 0) in flight.
+    """
+    after, face = _first_face(state, w, k, flight, nx, ny, horizon)
+    after, circle = _first_circle(state, w, k, flight, nx, ny, after)
+    return after, -1 if circle >= 0 else face, circle
+
+
 @where("arcs", otherwise=_no_standing_surface)
 def first_arc(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, horizon: float) -> tuple[float, int]:
-    """Return the earliest hit of an arc before `horizon` [s]; as `first_face`."""
+    """Return the earliest hit of an arc before `horizon` [s]: (duration, arc); as `first_one_by_one`."""
     ball, scene = state.balls[w, k], state.worlds[w].scene
     extent, best, index = state.scenes[scene].extent, horizon, -1
     sweep = sweep_of(flight, extent, horizon)
@@ -261,7 +292,9 @@ def _first_end_of_point(state: State, w: int, k: int, flight: Flight, horizon: f
     best, index = horizon, -1
     if ball.contact == RIDING:
         return best, index
-    for i in range(state.scenes[scene].faces):
+    first, last = faces_near(state, scene, ball.x, ball.y)
+    for at in range(first, last):
+        i = face_near(state, scene, at)
         face = state.faces[scene, i]
         if is_off(state, w, face.element) or not _is_level_on_face(ball, flight, face):
             continue

@@ -223,10 +223,16 @@ def _enable_all(state: State, w: int) -> None:
 @function
 def clear_hits(state: State, w: int) -> None:
     """Forget which elements were struck in the last step; a step without hits pays a comparison."""
-    if state.worlds[w].dirty:
-        state.worlds[w].dirty = 0
+    dirty = state.worlds[w].dirty
+    if dirty == 0:
+        return
+    state.worlds[w].dirty = 0
+    if dirty > state.struck.shape[1]:
         for element in range(state.hits.shape[1]):
             state.hits[w, element] = 0
+    else:
+        for j in range(dirty):
+            state.hits[w, state.struck[w, j]] = 0
 
 
 @function

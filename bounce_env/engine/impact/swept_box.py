@@ -60,11 +60,14 @@ def misses_box(flight: Flight, sweep: Sweep, box: Box) -> bool:
 
     Written so that infinite or undefined borders, of a flight without an end, leave out nothing.
     """
-    swept = sweep.box
-    beside = (box.right < swept.left) | (box.left > swept.right)
-    if beside | (box.above < swept.below) | (box.below > swept.above):
-        return True
-    return _passes_beside(flight, sweep, box)
+    return True if are_apart(sweep.box, box) else _passes_beside(flight, sweep, box)
+
+
+@function
+def are_apart(one: Box, other: Box) -> bool:
+    """Return whether two boxes have no point in common; undefined borders have."""
+    beside = (other.right < one.left) | (other.left > one.right)
+    return beside | (other.above < one.below) | (other.below > one.above)
 
 
 @function

@@ -133,5 +133,8 @@ def _copy_row(kept: Table, i: int, rows: Table, w: int) -> None:
 @function
 def count_hit(state: State, w: int, element: int) -> None:
     """Count a bounce from, or a crossing of, an element in this step."""
+    world = state.worlds[w]
     state.hits[w, element] += 1
-    state.worlds[w].dirty = 1
+    if world.dirty < state.struck.shape[1]:
+        state.struck[w, world.dirty] = element
+    world.dirty += 1

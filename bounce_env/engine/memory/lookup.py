@@ -65,3 +65,57 @@ def let_off(state: State, w: int, k: int) -> None:
 @where("members")
 def _undoom(state: State, w: int, k: int) -> None:
     state.members[w, k].doomed = 0
+
+
+@function
+def column_at(grid: Record, x: float) -> int:
+    """Return the column of a grid in which x [m] lies; of what lies outside the nearest one."""
+    return int(min(max((x - grid.x) * grid.inverse, 0.0), grid.columns - 1.0))
+
+
+@function
+def row_at(grid: Record, y: float) -> int:
+    """Return the row of a grid in which y [m] lies; of what lies outside the nearest one."""
+    return int(min(max((y - grid.y) * grid.inverse, 0.0), grid.rows - 1.0))
+
+
+@function
+def _every_face(state: State, scene: int, x: float, y: float) -> tuple[int, int]:
+    return 0, state.scenes[scene].faces
+
+
+@where("grids", otherwise=_every_face)
+def faces_near(state: State, scene: int, x: float, y: float) -> tuple[int, int]:
+    """Return from which number to before which to ask `face_near` for the walls that a ball at (x, y) [m] may touch."""
+    grid = state.grids[scene]
+    cell = row_at(grid, y) * grid.columns + column_at(grid, x)
+    return state.cell_starts[scene, cell], state.cell_circles[scene, cell]
+
+
+def _same_number(state: State, scene: int, at: int) -> int:
+    return at
+
+
+@where("grids", otherwise=_same_number)
+def face_near(state: State, scene: int, at: int) -> int:
+    """Return a face by its number from `faces_near`."""
+    return state.cell_entries[scene, at].shape
+
+
+@function
+def _every_circle(state: State, scene: int, x: float, y: float) -> tuple[int, int]:
+    return 0, state.scenes[scene].circles
+
+
+@where("grids", otherwise=_every_circle)
+def circles_near(state: State, scene: int, x: float, y: float) -> tuple[int, int]:
+    """Return the same for circles and `circle_near`."""
+    grid = state.grids[scene]
+    cell = row_at(grid, y) * grid.columns + column_at(grid, x)
+    return state.cell_circles[scene, cell], state.cell_starts[scene, cell + 1]
+
+
+@where("grids", otherwise=_same_number)
+def circle_near(state: State, scene: int, at: int) -> int:
+    """Return a circle by its number from `circles_near`."""
+    return state.cell_entries[scene, at].shape - state.scenes[scene].faces

@@ -40,6 +40,10 @@ ARC = record(
 SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", **BOX, drain="i8", element="i8")
 CIRCLE_SENSOR = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
 FIELD_EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
+GRID = record(  # of cells, see `memory.cells`
+    x="f8", y="f8", size="f8", inverse="f8", columns="i8", rows="i8",  # [m], 1 / size [1/m]
+)  # fmt: skip
+CELL_ENTRY = record(**BOX, shape="i8")  # of a wall or circle in a cell
 PART = record(  # what moves: a capsule that slides along its core or turns about (x, y), or a dragged wall
     x="f8", y="f8", ux="f8", uy="f8",  # [m] where it is at offset 0; unit vector along its core
     back="f8", front="f8",  # [m] where the core begins and ends along that vector
@@ -61,7 +65,7 @@ WORLD = record(
     bounces="i8", speed_capped="i8",  # counts since reset
     events="i8", events_before="i8",  # of the present call or step, and of those before it since reset
     drag_hi="f8", drag_lo="f8",  # when drag acted last
-    dirty="i8",  # whether `hits` has entries of the last step
+    dirty="i8",  # how often something was struck or crossed in the last step; 0: `hits` has no entries
 )  # fmt: skip
 
 # What a step without events reads comes first: it lies together in memory.
@@ -179,6 +183,9 @@ NO_WORLD = -1
 
 # Surfaces that one ball can touch at one instant; more than these are not seen.
 TOUCHES = 16
+
+# Elements struck in a step of which a list is kept; where there are more, all of them are gone through.
+STRUCK = 8
 
 # Contacts of a cluster, by the number of its balls: in the plane no ball touches more than six others.
 CONTACTS_OF_BALL = 8

@@ -26,6 +26,7 @@ from bounce_env.engine.memory.records import (
     NO_WORLD,
     PAIR,
     RECORDING,
+    STRUCK,
     TOUCH,
     TOUCHES,
     WORLD,
@@ -63,6 +64,10 @@ class State(NamedTuple):
     one_way: Table  # (scenes, faces) int8: 1 for a one-way wall
     circles: Table
     arcs: Table
+    grids: Table  # (scenes,) GRID; these four None where no scene has very many walls and circles, see `memory.cells`
+    cell_starts: Table  # (scenes, cells + 1) int64
+    cell_circles: Table  # (scenes, cells) int64
+    cell_entries: Table  # (scenes, n) CELL_ENTRY
     sensors: Table
     circle_sensors: Table
     field_edges: Table  # of fields
@@ -94,6 +99,7 @@ class State(NamedTuple):
     disabled: Table  # (worlds, elements) int8; None where nothing can be switched off
     cooling: Table  # (worlds, elements) COOLING; None where no scene has a cooldown
     hits: Array  # (worlds, elements) int64: how often each was struck or crossed in the last step
+    struck: Array  # (worlds, STRUCK) int64: the first of them, `dirty` of them, one that was struck again as well
 
 
 _FIRST_OF_WORLDS = State._fields.index("worlds")
@@ -170,5 +176,6 @@ def new_state(tables: dict[str, Any], worlds: int, balls: int, present: frozense
         disabled=np.zeros((worlds, elements.shape[1]), np.int8) if Feature.SWITCHES in present else None,
         cooling=np.zeros((worlds, elements.shape[1]), COOLING) if Feature.COOLDOWN in present else None,
         hits=np.zeros((worlds, elements.shape[1]), np.int64),
+        struck=np.zeros((worlds, STRUCK), np.int64),
     )
     return with_recording(state)

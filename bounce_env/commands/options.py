@@ -150,6 +150,8 @@ class Play:
     """Of what an agent would be given, pixels."""
     obs_height: int | None = None
     """Of what an agent would be given, pixels."""
+    grayscale: bool | None = None
+    """Whether in grey."""
 
     def run(self) -> int:
         """Play; returns the exit code."""

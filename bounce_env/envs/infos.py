@@ -55,8 +55,8 @@ def final_info(batch: Batch, ended: Flags, finals: npt.NDArray[Any], told: Told)
 
 
 def masked(told: Mapping[str, Any], mask: Flags) -> dict[str, Any]:
-    """Return what is told with the mask of the worlds that it is told of, one copy for all keys."""
-    mask, info = mask.copy(), {}
+    """Return what is told with the mask of the worlds that it is told of, each array by itself."""
+    info: dict[str, Any] = {}
     for key, values in told.items():
-        info[key], info[f"_{key}"] = values, mask
+        info[key], info[f"_{key}"] = values, mask.copy()
     return info

@@ -66,7 +66,7 @@ def test_a_replay_of_walls_leads_from_ball_to_ball_and_shows_no_serve_that_was_t
         over = terminated or truncated
         batch = env._batch
         seen.append((float(batch.episodes["frames"][0]) / 60.0, *batch.view(0)[0][0, :2]))
-        targets.append(batch.target_places(0)[0].tolist())
+        targets.append(batch.target_places(np.array([0]))[0, 0].tolist())
     document = env.replay().document
     assert read_document(env.replay().json) == document
     assert [value for *_, value in document["changes"]] == [list(t) for t in dict.fromkeys(map(tuple, targets))][1:]

@@ -35,7 +35,7 @@ def first_face_or_circle(
     """
     scene = state.worlds[w].scene
     grid, faces = state.grids[scene], state.scenes[scene].faces
-    box = Box(grid.x, grid.x + grid.columns * grid.size, grid.y, grid.y + grid.rows * grid.size)
+    box = Box(grid.x, grid.x + grid.columns * grid.side, grid.y, grid.y + grid.rows * grid.side)
     hit, t = Hit(horizon, -1), 0.0
     while t < hit.after:
         x, y = flight_place_after(flight, t)
@@ -69,7 +69,7 @@ def _first_on_the_way(
     pull = acceleration_magnitude(flight.ax, flight.ay)
     x, y = flight_place_after(flight, t)
     while t < min(until, hit.after):
-        through = _time_through_cell(flight_after(flight, t), STRIDE * grid.size)
+        through = _time_through_cell(flight_after(flight, t), STRIDE * grid.side)
         if through == math.inf:  # it stands
             return hit, math.inf
         end = min(t + through, until, hit.after)
@@ -100,7 +100,7 @@ def _first_in_cells(
             entry = state.cell_entries[scene, at]
             if are_apart(swept, box_of(entry)):
                 continue
-            shape = entry.shape
+            shape = entry.number
             if shape < faces:
                 after = face_hit(state, w, k, flight, nx, ny, shape, hit.after)
             else:

@@ -60,7 +60,7 @@ def cells_of(faces: Array, circles: Array, extent: float, grid: Grid | None = No
     walls = np.array([sum(shape < len(faces) for shape in cell) for cell in lists], np.int64)
     shapes = np.array([shape for cell in lists for shape in cell], np.int64)
     entries = np.zeros(len(shapes), CELL_ENTRY)
-    entries["shape"] = shapes
+    entries["number"] = shapes
     for name, border in zip(("left", "right", "below", "above"), boxes[shapes].T, strict=True):
         entries[name] = border
     return Cells(grid, starts, starts[:-1] + walls, entries)

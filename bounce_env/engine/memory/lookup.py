@@ -99,7 +99,7 @@ def _same_number(state: State, scene: int, at: int) -> int:
 @where("grids", otherwise=_same_number)
 def face_near(state: State, scene: int, at: int) -> int:
     """Return a face by its number from `faces_near`."""
-    return state.cell_entries[scene, at].shape
+    return state.cell_entries[scene, at].number
 
 
 @function
@@ -118,4 +118,4 @@ def circles_near(state: State, scene: int, x: float, y: float) -> tuple[int, int
 @where("grids", otherwise=_same_number)
 def circle_near(state: State, scene: int, at: int) -> int:
     """Return a circle by its number from `circles_near`."""
-    return state.cell_entries[scene, at].shape - state.scenes[scene].faces
+    return state.cell_entries[scene, at].number - state.scenes[scene].faces

@@ -41,9 +41,9 @@ SENSOR = record(x="f8", y="f8", ux="f8", uy="f8", length="f8", **BOX, drain="i8"
 CIRCLE_SENSOR = record(x="f8", y="f8", radius="f8", drain="i8", element="i8")  # a circular sensor
 FIELD_EDGE = record(x="f8", y="f8", ux="f8", uy="f8", ax="f8", ay="f8", last="i8")  # of a field, which lies on its left
 GRID = record(  # of cells, see `memory.cells`
-    x="f8", y="f8", size="f8", inverse="f8", columns="i8", rows="i8",  # [m], 1 / size [1/m]
+    x="f8", y="f8", side="f8", inverse="f8", columns="i8", rows="i8",  # [m], 1 / side [1/m]
 )  # fmt: skip
-CELL_ENTRY = record(**BOX, shape="i8")  # of a wall or circle in a cell
+CELL_ENTRY = record(**BOX, number="i8")  # of a wall or circle in a cell
 PART = record(  # what moves: a capsule that slides along its core or turns about (x, y), or a dragged wall
     x="f8", y="f8", ux="f8", uy="f8",  # [m] where it is at offset 0; unit vector along its core
     back="f8", front="f8",  # [m] where the core begins and ends along that vector

@@ -120,6 +120,19 @@ def test_balls_that_leave_the_crowd_come_back_under_gravity_and_else_do_not():
     assert len(world.advance(1e9, ledger=True)) == 0  # it stands for ever
 
 
+@pytest.mark.parametrize("velocity", [(-1.0, 0.0), (0.0, -1.0), (-1.0, -1.0), (0.0, 0.0), (-1e-300, 0.0)])
+def test_a_ball_that_leaves_the_grid_from_its_very_border(velocity):
+    scene = crowded(400, 0.0, bumpers=False)
+    world = World(scene, features=["cells"])
+    grid = world._state.grids[0]  # type: ignore[index]
+    for place in ((float(grid["x"]), 1.0), (1.0, float(grid["y"])), (float(grid["x"]), float(grid["y"]))):
+        world.reset(position=place, velocity=velocity)
+        ledger = world.advance(100.0, ledger=True)
+        assert ledger is not None
+        assert len(ledger) == 0 or any(velocity)
+        assert world.time == 100.0
+
+
 @pytest.mark.parametrize(("radius", "bumpers"), [(0.0, False), (0.05, False), (0.05, True)])
 def test_ten_thousand_cost_a_bounce_little_more_than_ten(radius, bumpers):
     """At most 4 times, where they are asked one by one it is more than 100: 2.5 to 2.8 were measured, in turns."""

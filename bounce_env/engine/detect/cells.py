@@ -68,6 +68,8 @@ def _first_on_the_way(
     grid, margin = state.grids[scene], CELL_MARGIN * state.scenes[scene].extent
     pull = acceleration_magnitude(flight.ax, flight.ay)
     x, y = flight_place_after(flight, t)
+    if not until > t:  # on the border, where it leaves at once: a little is searched, so that time goes on
+        until = t + _time_through_cell(flight_after(flight, t), grid.side)
     while t < min(until, hit.after):
         through = _time_through_cell(flight_after(flight, t), STRIDE * grid.side)
         if through == math.inf:  # it stands
@@ -85,9 +87,7 @@ def _first_on_the_way(
 
 
 @function
-def _first_in_cells(
-    state: State, w: int, k: int, flight: Flight, nx: float, ny: float, swept: Box, hit: Hit
-) -> Hit:  # fmt: skip
+def _first_in_cells(state: State, w: int, k: int, flight: Flight, nx: float, ny: float, swept: Box, hit: Hit) -> Hit:
     """Search what is listed in the cells that a box touches, as far as its own box does."""
     scene = state.worlds[w].scene
     grid, faces = state.grids[scene], state.scenes[scene].faces

@@ -5,6 +5,7 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cached_property, partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -161,7 +162,9 @@ class Batch:
             ended = step_worlds(self._bound(), controls, self.autoreset, 0, self.worlds)
         else:
             step = partial(step_worlds, self._bound(), controls, self.autoreset)
-            ended = sum(self._pool().map(step, self._borders[:-1], self._borders[1:]))
+            own, *others = pairwise(self._borders)
+            played = [self._pool().submit(step, *borders) for borders in others]
+            ended = step(*own) + sum(slice_.result() for slice_ in played)
         if ended < 0:
             world, j = np.argwhere(~np.isfinite(controls))[0].tolist()
             place = f"{world}, {j}" if controls.shape[1] > 1 else f"{world}"
@@ -170,9 +173,9 @@ class Batch:
         return ended
 
     def _pool(self) -> ThreadPoolExecutor:
-        """The threads of this process: a forked child has a copy of its parent's pool, but none of its threads."""
+        """The threads beside the one that calls: a forked child has a copy of the pool, but none of its threads."""
         if self._threads is None or self._process != os.getpid():
-            self._threads, self._process = ThreadPoolExecutor(len(self._borders) - 1), os.getpid()
+            self._threads, self._process = ThreadPoolExecutor(len(self._borders) - 2), os.getpid()
         return self._threads
 
     def clone(self, mask: Mask) -> States:

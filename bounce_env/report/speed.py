@@ -41,6 +41,15 @@ def speed_jobs(*, quick: bool) -> list[tuple[str, Callable[[], SpeedRow]]]:
         for worlds in batches:
             label = f"{game}, vector env"
             add(label, peer, worlds, "steps", lambda g=game, n=worlds: _vector(g, n, seconds))  # type: ignore[misc]
+    for game in GAMES:
+        if not quick:
+            label = f"{game}, vector env, 2 threads, by the clock"
+            add(label, False, 8192, "steps", lambda g=game: _vector(g, 8192, seconds, num_threads=2))  # type: ignore[misc]
+        for shades in ({"grayscale": True},) if quick else ({"grayscale": True}, {}):
+            label = f"{game}, 84 x 84 pixels in {'grey' if shades else 'colour'}"
+            add(label, False, 256, "frames", lambda g=game, s=shades: _pixels(g, seconds, **s))  # type: ignore[misc]
+        label = f"{game}, clone_state and restore_state"
+        add(label, False, 1, "calls", lambda g=game: _copies(g, seconds))  # type: ignore[misc]
     add("World.advance, nothing happens", False, 1, "calls", lambda: _calls(seconds))
     for name, space in (("pymunk", _pymunk), ("Box2D", _box2d)):
         if find_spec(name) is None:  # an extra: the table of methods says that it is not there
@@ -52,14 +61,14 @@ def speed_jobs(*, quick: bool) -> list[tuple[str, Callable[[], SpeedRow]]]:
     return found
 
 
-def _timed(act: Callable[[], float], seconds: float) -> Measured:
-    """Return a function that repeats `act`, which returns how much it has done, for some seconds of CPU."""
+def _timed(act: Callable[[], float], seconds: float, clock: Callable[[], float] = time.process_time) -> Measured:
+    """Return a function that repeats `act`, which returns how much it has done, for some seconds by a clock."""
 
     def measured() -> float:
-        done, begin = 0.0, time.process_time()
-        while time.process_time() - begin < seconds:
+        done, begin = 0.0, clock()
+        while clock() - begin < seconds:
             done += act()
-        return done / (time.process_time() - begin)
+        return done / (clock() - begin)
 
     return measured
 
@@ -80,8 +89,8 @@ def _single(game: str, seconds: float) -> Measured:
     return _timed(act, seconds)
 
 
-def _vector(game: str, worlds: int, seconds: float) -> Measured:
-    keywords: dict[str, Any] = {} if game.startswith("CartPole") else {"copy": False}
+def _vector(game: str, worlds: int, seconds: float, **more: Any) -> Measured:
+    keywords: dict[str, Any] = {} if game.startswith("CartPole") else {"copy": False, **more}
     envs = gym.make_vec(game, num_envs=worlds, vectorization_mode="vector_entry_point", **keywords)
     envs.reset(seed=0)
     envs.action_space.seed(0)
@@ -91,6 +100,22 @@ def _vector(game: str, worlds: int, seconds: float) -> Measured:
         for action in actions:
             envs.step(action)
         return len(actions) * worlds
+
+    return _timed(act, seconds, time.perf_counter if more.get("num_threads", 1) > 1 else time.process_time)
+
+
+def _pixels(game: str, seconds: float, **more: Any) -> Measured:
+    return _vector(game, 256, seconds, obs="pixels", obs_width=84, obs_height=84, **more)
+
+
+def _copies(game: str, seconds: float) -> Measured:
+    env: Any = gym.make(game).unwrapped
+    env.reset(seed=0)
+
+    def act() -> float:
+        for _ in range(64):
+            env.restore_state(env.clone_state())
+        return 64
 
     return _timed(act, seconds)
 

@@ -24,6 +24,9 @@ START_OVERLAP = 1e-12  # (dimensionless, times metres)
 # rounding of both, and 16 times what a ball in a corner may be deep in a wall.
 BOX_MARGIN = 2.0**-32
 
+# A wall or circle is listed in cells that it misses by this share of the scene's extent: more than a ball touches by.
+CELL_MARGIN = 2.0**-20
+
 # The zone of a part is wider than its reach by this share: it keeps rounding of the border from hiding a hit.
 ZONE_MARGIN = 0.01
 

@@ -150,11 +150,12 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         r = self._batch.results
         rewards, terminated, truncated = r.rewards.copy(), r.terminated.copy(), r.truncated.copy()
         self._frames.update(range(self.num_envs))
-        info = {} if not ended else self._info_of_ends(terminated | truncated)
+        over = terminated | truncated
+        info = self._info_of_ends(over) if ended else {}
         if self._told == "all":
             info |= info_of_worlds(self._batch)
         if self._mode == AutoresetMode.DISABLED:
-            self._ended = terminated | truncated
+            self._ended = over
         return self._observations(), rewards, terminated, truncated, info
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:

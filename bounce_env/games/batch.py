@@ -254,9 +254,8 @@ class Batch:
     def scene(self, world: int) -> Scene:
         """Return the scene that a world plays now."""
         scene = self.game.scene_on(None if self.levels is None else int(self.levels[world]))
-        places = dict(
-            zip(self.game.targets, map(tuple, self.target_places(np.array([world]))[0].tolist()), strict=True)
-        )
+        centres = self.target_places(np.array([world]))[0].tolist()
+        places = dict(zip(self.game.targets, map(tuple, centres), strict=True))
         elements = (
             replace(e, center=places[i]) if i in places and isinstance(e, Sensor) else e
             for i, e in enumerate(scene.elements)

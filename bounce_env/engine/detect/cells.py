@@ -6,7 +6,7 @@ from typing import NamedTuple
 from bounce_env.engine.compile.jit import function, where
 from bounce_env.engine.detect.surfaces import circle_hit, face_hit, first_one_by_one
 from bounce_env.engine.impact.swept_box import Box, are_apart, box_entry_time, box_leaving_time, box_of, is_in_box
-from bounce_env.engine.memory.cells import CELL_MARGIN, STRIDE
+from bounce_env.engine.memory.cells import STRIDE
 from bounce_env.engine.memory.lookup import column_at, row_at
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.flight import (
@@ -15,7 +15,7 @@ from bounce_env.engine.motion.flight import (
     flight_after,
     flight_place_after,
 )
-from bounce_env.engine.tolerances import BOX_MARGIN
+from bounce_env.engine.tolerances import BOX_MARGIN, CELL_MARGIN
 
 
 class Hit(NamedTuple):

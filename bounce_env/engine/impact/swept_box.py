@@ -60,7 +60,7 @@ def misses_box(flight: Flight, sweep: Sweep, box: Box) -> bool:
 
     Written so that infinite or undefined borders, of a flight without an end, leave out nothing.
     """
-    return True if are_apart(sweep.box, box) else _passes_beside(flight, sweep, box)
+    return are_apart(sweep.box, box) or _passes_beside(flight, sweep, box)
 
 
 @function

@@ -12,11 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from bounce_env.engine.memory.records import CELL_ENTRY, GRID, Array
+from bounce_env.engine.tolerances import CELL_MARGIN
 
 Integers = npt.NDArray[np.int64]
-
-CELL_MARGIN = 2.0**-20
-"""As a share of the scene's extent: a shape is listed in cells that it misses by so little."""
 
 FEWEST = 128
 """Shapes for which cells pay: fewer all lie in one."""

@@ -84,11 +84,17 @@ def _every_face(state: State, scene: int, x: float, y: float) -> tuple[int, int]
     return 0, state.scenes[scene].faces
 
 
+@function
+def _cell_at(state: State, scene: int, x: float, y: float) -> int:
+    grid = state.grids[scene]
+    cell: int = row_at(grid, y) * grid.columns + column_at(grid, x)
+    return cell
+
+
 @where("grids", otherwise=_every_face)
 def faces_near(state: State, scene: int, x: float, y: float) -> tuple[int, int]:
     """Return from which number to before which to ask `face_near` for the walls that a ball at (x, y) [m] may touch."""
-    grid = state.grids[scene]
-    cell = row_at(grid, y) * grid.columns + column_at(grid, x)
+    cell = _cell_at(state, scene, x, y)
     return state.cell_starts[scene, cell], state.cell_circles[scene, cell]
 
 
@@ -110,8 +116,7 @@ def _every_circle(state: State, scene: int, x: float, y: float) -> tuple[int, in
 @where("grids", otherwise=_every_circle)
 def circles_near(state: State, scene: int, x: float, y: float) -> tuple[int, int]:
     """Return the same for circles and `circle_near`."""
-    grid = state.grids[scene]
-    cell = row_at(grid, y) * grid.columns + column_at(grid, x)
+    cell = _cell_at(state, scene, x, y)
     return state.cell_circles[scene, cell], state.cell_starts[scene, cell + 1]
 
 

@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
-.PHONY: train test check results soak browser pictures dist lint clean
+.PHONY: train test check results soak browser pictures docs dist lint clean
 
 train: $(VENV)/train
 	$(BIN)/python -m agents.train
@@ -31,6 +31,10 @@ browser: $(VENV)/dev
 pictures: $(VENV)/dev
 	$(BIN)/python -m tests.browser.pictures
 
+# The site, into docs/_build/html: its examples run, its pictures are drawn, and a warning is an error.
+docs: $(VENV)/docs
+	SDL_VIDEODRIVER=dummy $(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
+
 # Wheel and sdist, tried out in a fresh environment of each Python that is there.
 dist: $(VENV)/dist
 	$(BIN)/python .ci/dist.py
@@ -43,7 +47,7 @@ lint: $(VENV)/dev
 	@if command -v npx > /dev/null; then npx --yes oxlint@1.94.0 --deny-warnings bounce_env/lab/pages bounce_env/replay; \
 	else echo 'no npx: the pages are not linted'; fi
 
-$(VENV)/train $(VENV)/dev $(VENV)/dist: pyproject.toml constraints.txt
+$(VENV)/train $(VENV)/docs $(VENV)/dev $(VENV)/dist: pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@echo "Installing bounce_env[$(@F)] into $(VENV): some minutes the first time ..."
 	$(INSTALL) ".[$(@F)]"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from bounce_env.registration import register, register_all
 
 if TYPE_CHECKING:
-    from bounce_env.engine import EventKind, Status, World, WorldBatch
+    from bounce_env.engine import EventKind, Recorded, Status, World, WorldBatch
     from bounce_env.envs import PaddleEnv, PinballEnv, WallsEnv
     from bounce_env.replay import Replay, load_replay, replay_of
     from bounce_env.scene import (
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         load_scene,
     )
     from bounce_env.trained import load_agent
+    from bounce_env.trajectory import ledger_table, plot_trajectory
 
 _SCENE = (
     "ALL_FEATURES",
@@ -49,10 +50,11 @@ _SCENE = (
 )
 _HOME = {
     **dict.fromkeys(_SCENE, "bounce_env.scene"),
-    **dict.fromkeys(("EventKind", "Status", "World", "WorldBatch"), "bounce_env.engine"),
+    **dict.fromkeys(("EventKind", "Recorded", "Status", "World", "WorldBatch"), "bounce_env.engine"),
     **dict.fromkeys(("PaddleEnv", "PinballEnv", "WallsEnv"), "bounce_env.envs"),
     **dict.fromkeys(("Replay", "load_replay", "replay_of"), "bounce_env.replay"),
     "load_agent": "bounce_env.trained",
+    **dict.fromkeys(("ledger_table", "plot_trajectory"), "bounce_env.trajectory"),
 }
 
 __all__ = [
@@ -67,6 +69,7 @@ __all__ = [
     "Paddle",
     "PaddleEnv",
     "PinballEnv",
+    "Recorded",
     "Replay",
     "Scene",
     "SceneError",
@@ -78,9 +81,11 @@ __all__ = [
     "WorldBatch",
     "__version__",
     "builtin_scenes",
+    "ledger_table",
     "load_agent",
     "load_replay",
     "load_scene",
+    "plot_trajectory",
     "register",
     "replay_of",
 ]

@@ -106,16 +106,22 @@ class BounceVecEnv(VecEnv):
         self._envs.close()
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
-        """Return an attribute of the worlds of `indices`, see `OneWorld`."""
+        """Return the attribute `attr_name` of the worlds of `indices`; AttributeError for what a world has not."""
         return [getattr(world, attr_name) for world in self._worlds(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Set an attribute of your own in the worlds of `indices`; NotImplementedError for what environments have."""
+        """Set an attribute `attr_name` of your own to `value` in the worlds of `indices`.
+
+        Raises NotImplementedError for what environments have themselves.
+        """
         for world in self._worlds(indices):
             setattr(world, attr_name, value)
 
     def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
-        """Call a method of the worlds of `indices`, and of no others; see `OneWorld`."""
+        """Call the method `method_name` of the worlds of `indices`, and of no others, with `args` and `kwargs`.
+
+        What a world has: `bounce_env.envs.one_world.OneWorld`. Raises AttributeError for what it has not.
+        """
         return [getattr(world, method_name)(*args, **kwargs) for world in self._worlds(indices)]
 
     def _worlds(self, indices: VecEnvIndices) -> list[OneWorld]:
@@ -124,7 +130,7 @@ class BounceVecEnv(VecEnv):
     def env_is_wrapped(
         self, wrapper_class: type[gym.Wrapper[Any, Any, Any, Any]], indices: VecEnvIndices = None
     ) -> list[bool]:
-        """Return whether there is a wrapper: never, except that episodes are monitored."""
+        """Return of the worlds of `indices` whether `wrapper_class` wraps them: never, but for SB3's Monitor."""
         from stable_baselines3.common.monitor import Monitor  # noqa: PLC0415
 
         return [wrapper_class is Monitor for _ in self._get_indices(indices)]

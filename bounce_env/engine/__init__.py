@@ -1,6 +1,7 @@
 """The bounce engine: exact, event-driven, in two dimensions; see docs/physics.md and docs/architecture.md.
 
-Its face is `World`, `WorldBatch`, `Status`, `EventKind` and `LEDGER`; the rest are the rooms that these are built of.
+Its face is `World`, `WorldBatch`, `Recorded`, `Status`, `EventKind` and `LEDGER`; the rest are the rooms that these are
+built of.
 """
 
 from importlib import import_module
@@ -8,18 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from bounce_env.engine.memory.records import LEDGER, EventKind, Status
+    from bounce_env.engine.recorded import Recorded
     from bounce_env.engine.world import World
     from bounce_env.engine.world_batch import WorldBatch
 
 _HOME = {
     "LEDGER": "memory.records",
     "EventKind": "memory.records",
+    "Recorded": "recorded",
     "Status": "memory.records",
     "World": "world",
     "WorldBatch": "world_batch",
 }
 
-__all__ = ["LEDGER", "EventKind", "Status", "World", "WorldBatch"]
+__all__ = ["LEDGER", "EventKind", "Recorded", "Status", "World", "WorldBatch"]
 
 
 def __getattr__(name: str) -> Any:

@@ -70,7 +70,7 @@ class Change(NamedTuple):
 
 
 class Recorded(NamedTuple):
-    """A run of a world from its reset on.
+    """A run of a world from its reset on: what docs/replay.md makes a page of.
 
     ledger: all events, see `World.advance`. balls: the paths of each, one after the other. parts: those of each moving
     part, in the order of the scene: of a paddle or a bumper the centre x, y [m]; of a flipper its angle [rad]; of a

@@ -46,7 +46,7 @@ _LEDGER_ROWS, _MOMENTS = 1024, 1024
 
 
 class World:
-    """Balls in one scene, advanced exactly from event to event.
+    """Balls in one scene, advanced exactly from event to event: docs/physics.md says what happens, and in which order.
 
     scene: what the world is made of. balls: how many balls, 1 or more, all alike. features: names of features that its
     kernels are to have besides those of the scene; the motion is the same to the bit. With `ALL_FEATURES` worlds of
@@ -208,7 +208,7 @@ class World:
         world_resolve_all(self._bound)
 
     def push(self, change: npt.ArrayLike) -> None:
-        """Add (dvx, dvy) [m/s] to the velocity of every ball in play, now.
+        """Add `change` = (dvx, dvy) [m/s] to the velocity of every ball in play, now.
 
         Raises ValueError for NaN, infinity and more than 1e15 either way.
         """
@@ -284,7 +284,7 @@ class World:
         return snapshot_bytes(self.scene, self._state)
 
     def restore(self, data: bytes) -> None:
-        """Go on from a snapshot of a world of an equal scene.
+        """Go on from `data`, a snapshot of a world of an equal scene.
 
         Raises ValueError where the bytes are no snapshot, truncated or changed, of another version or another scene;
         the world is then as before.

@@ -87,7 +87,7 @@ class WorldBatch:
 
     scenes: one Scene, or several. scene_of: how many worlds, where there is one scene; or the index in `scenes` of each
     world's. features: forced on besides those that any of the scenes has, as for a `World`. All worlds run through
-    one kernel; what each does is what a `World` of its scene does, to the bit.
+    one kernel; what each does is what a `World` of its scene does, to the bit (docs/physics.md).
 
     Raises ValueError where scenes cannot share a batch: some have point balls and others discs.
     Before the first `reset` every other method raises RuntimeError.
@@ -169,7 +169,7 @@ class WorldBatch:
         (batch_command_part if velocities.ndim == 1 else batch_command_wall)(self._bound, m, velocities)
 
     def push(self, change: npt.ArrayLike) -> None:
-        """Add (dvx, dvy) [m/s] to the velocity of every ball in play; of shape (2,), or (worlds, 2).
+        """Add `change` = (dvx, dvy) [m/s] to the velocity of every ball in play; of shape (2,), or (worlds, 2).
 
         Raises ValueError for NaN, infinity and more than 1e15 either way.
         """

@@ -9,22 +9,22 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
-from gymnasium.envs.registration import EnvSpec
 
+from bounce_env.engine.recorded import Recorded
 from bounce_env.envs.keywords import HasKeywords
 from bounce_env.envs.observations import Frames
 from bounce_env.envs.one_world import plain
+from bounce_env.envs.recording import episode_replay, recorded_episode
 from bounce_env.games.actions import Buttons, Continuous, Discrete
 from bounce_env.games.batch import Batch
 from bounce_env.games.episode import DISABLED, RUNNING
 from bounce_env.games.game import Game
-from bounce_env.games.recorder import run_of
 from bounce_env.games.reset_options import checked_options, start_rows
 from bounce_env.games.state_copy import States
 from bounce_env.render import Picture, Window
 from bounce_env.render.lazy_pygame import load_pygame
 from bounce_env.render.window import display_problem
-from bounce_env.replay import Replay, replay_of
+from bounce_env.replay import Replay
 from bounce_env.scene import Scene
 from bounce_env.wording import nearest, shown, whole
 
@@ -107,26 +107,6 @@ def taken_snapshot(seed: Any, options: Mapping[str, Any] | None) -> tuple[Any, d
     return snapshot, others
 
 
-def episode_replay(batch: Batch, spec: EnvSpec | None, *, last: bool) -> Replay:
-    """Return the present episode of the recorded world, or the one before it; RuntimeError where there is none."""
-    recorder = batch.recorder
-    episode = None if recorder is None else recorder.last if last else recorder.present
-    if recorder is None:
-        raise RuntimeError("nothing is recorded: record() or record_events=True, and then reset()")
-    if episode is None:
-        which = "one was before it" if last else "the present one began"
-        raise RuntimeError(
-            f"nothing is recorded of this episode: recording began, or a state was restored, after {which}"
-        )
-    about = {} if spec is None else {"id": spec.id, "kwargs": spec.kwargs}
-    return replay_of(
-        run_of(episode, batch.state, recorder.world),
-        score=((step.time, step.score) for step in episode.steps),
-        lost=episode.lost,
-        about={**about, "seed": episode.origin.seed, "episode": episode.origin.number},
-    )
-
-
 class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
     """A game as a Gymnasium environment; the games are its subclasses, whose docstrings name the keywords."""
 
@@ -187,7 +167,10 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         return self._observation(), self._info()
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """One step; see the card. Raises ResetNeeded when no episode is running, ValueError for a bad action."""
+        """One step: observation, reward (float), terminated, truncated, info; their shapes and units are on the card.
+
+        Raises ResetNeeded when no episode is running, ValueError for a bad action.
+        """
         if not self._running:
             raise gym.error.ResetNeeded("the episode has ended or not begun: call reset() before step()")
         ended = self._batch.step(action)
@@ -205,7 +188,10 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         return self._observation(), r.rewards.item(0), r.terminated.item(0), r.truncated.item(0), info
 
     def render(self) -> npt.NDArray[np.uint8] | None:
-        """Return the present frame (height, width, 3) in mode rgb_array; in mode human the same picture in a window."""
+        """Return the present frame, shape (height, width, 3), uint8, each number 0 to 255, in mode rgb_array.
+
+        In mode human the same picture is shown in a window. Raises ResetNeeded before the first reset.
+        """
         if self.render_mode is None:
             gym.logger.warn('render() needs a render mode: gym.make(..., render_mode="rgb_array")')
             return None
@@ -224,7 +210,10 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         return None
 
     def record(self, on: bool = True) -> None:
-        """Keep all events from the next episode on, for `replay`; with False: no longer. It changes no bit of play."""
+        """Keep all events from the next episode on, for `replay`; with False: no longer. It changes no bit of play.
+
+        Raises ValueError for anything but True and False.
+        """
         if not isinstance(on, bool):
             raise ValueError(f"on = {shown(on)}: must be True or False")
         self._batch.record(0 if on else None)
@@ -235,6 +224,13 @@ class BounceEnv(HasKeywords, gym.Env[Observation, Any]):
         Raises RuntimeError where it was not recorded from its beginning on.
         """
         return episode_replay(self._batch, self.spec, last=last)
+
+    def recorded(self, *, last: bool = False) -> Recorded:
+        """Return the same as the engine's run, with its ledger: for `ledger_table` and `plot_trajectory`.
+
+        last: the episode before it. Raises RuntimeError as `replay` does.
+        """
+        return recorded_episode(self._batch, last=last)[1]
 
     def picture(self) -> Picture:
         """Return what a frame shows now. Raises ResetNeeded before the first reset."""

@@ -13,7 +13,7 @@ Flags = npt.NDArray[np.bool_]
 Told = Literal["none", "ends", "all"]
 
 HOW_MUCH: tuple[Told, ...] = ("none", "ends", "all")
-"""What the keyword `info` may be: nothing; what is said at an episode's end; and score, ball and level at each step."""
+"""What the keyword `info` may be: nothing; all that is said at an episode's end; and some of it at each step."""
 
 
 def checked_info(info: Any) -> Told:

@@ -13,6 +13,7 @@ from gymnasium.envs.registration import EnvSpec
 from bounce_env.envs.observations import ViewOptions
 from bounce_env.games.batch import Batch
 from bounce_env.games.game import Game
+from bounce_env.games.observed import Observed
 from bounce_env.scene import SceneError, builtin_scenes, scene_to_dict
 from bounce_env.wording import shown, unknown_name
 
@@ -68,6 +69,11 @@ class HasKeywords:
         except ValueError as error:  # a scene that cannot be played, which the game does not know by its name
             named = "" if options.scene is None else f" (scene = {shown(options.scene)})"
             raise ValueError(f"{error}{named}") from None
+
+    @property
+    def observed(self) -> tuple[Observed, ...]:
+        """What each number of an observation is where `obs` is "state", by its index: its name, unit and bounds."""
+        return self._batch.game.observed
 
     @property
     def spec(self) -> EnvSpec | None:

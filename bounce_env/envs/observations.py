@@ -107,7 +107,7 @@ class Frames:
         """Of one world's observation; the bounds of a state come from the physics, nothing is clipped to them."""
         game = self._batch.game
         if self._seen is None:
-            return spaces.Box(game.observation_low, game.observation_high, dtype=np.float32)
+            return spaces.Box(*game.observation_bounds, dtype=np.float32)
         return spaces.Box(0, 255, self._seen.frames.shape[1:], np.uint8)
 
     @property

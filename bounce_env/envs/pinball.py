@@ -37,25 +37,26 @@ class PinballEnv(BounceEnv):
 
     The multiplier falls back to 1 with each new ball; targets and lanes stay as they are.
 
-    Observation, float32, nothing clipped; n numbers each for what the table has n of:
+    Observation, float32, nothing clipped; the indices are those of the built-in table (of one with other numbers of
+    flippers, targets, lanes or bumpers, `env.unwrapped.observed` says what is where):
 
-    | what | range |
-    | --- | --- |
-    | ball x, y: left and bottom of the table -1, right and top 1 | [-1, 1] |
-    | ball velocity x, y, in m/s | +-sqrt(max_speed^2 + 2 g H), about 4.3 |
-    | each flipper: 0 down, 1 up (left, right) | [0, 1] |
-    | balls left, this one included, over `balls` | [0, 1] |
-    | time for which a lost ball is still given back, over 5 s | [0, 1] |
-    | time that the ball has been at the flippers, over 2 s; 1: they are released until it leaves | [0, 1] |
-    | multiplier over 5 | [0, 1] |
-    | hits of bumpers and slingshots since a flipper's touch, over 20 | [0, 1] |
-    | time without points or a touch of a flipper, over 10 s | [0, 1] |
-    | time until each button acts again, over 0.3 s (left, right) | [0, 1] |
-    | each target (3): 1 if it is lit | {0, 1} |
-    | each lane (3): 1 if it is lit | {0, 1} |
-    | each bumper (3): what is left of its cooldown of 0.1 s | [0, 1] |
-    | tilt meter over 3, 1: tilted; time until the next nudge over 0.25 s; only with `nudge` | [0, 1] |
-    | each button that is in force, only where actions are sticky | {0, 1} |
+    | index | what | range |
+    | --- | --- | --- |
+    | 0, 1 | ball x, y: left and bottom of the table -1, right and top 1 | [-1, 1] |
+    | 2, 3 | ball velocity x, y, in m/s | +-sqrt(max_speed^2 + 2 g H), about 4.3 |
+    | 4, 5 | each flipper: 0 down, 1 up (left, right) | [0, 1] |
+    | 6 | balls left, this one included, over `balls` | [0, 1] |
+    | 7 | time for which a lost ball is still given back, over 5 s | [0, 1] |
+    | 8 | time that the ball has been at the flippers, over 2 s; 1: they are released until it leaves | [0, 1] |
+    | 9 | multiplier over 5 | [0, 1] |
+    | 10 | hits of bumpers and slingshots since a flipper's touch, over 20 | [0, 1] |
+    | 11 | time without points or a touch of a flipper, over 10 s | [0, 1] |
+    | 12, 13 | time until each button acts again, over 0.3 s (left, right) | [0, 1] |
+    | 14 to 16 | each target: 1 if it is lit | {0, 1} |
+    | 17 to 19 | each lane: 1 if it is lit | {0, 1} |
+    | 20 to 22 | each bumper: what is left of its cooldown of 0.1 s | [0, 1] |
+    | 23, 24 | tilt meter over 3, 1: tilted; time until the next nudge over 0.25 s; only with `nudge` | [0, 1] |
+    | last | each button that is in force, only where actions are sticky | {0, 1} |
 
     With `obs="pixels"` it is a frame as `render` gives it, but for the score: uint8 (obs_height, obs_width, 3), or with
     `grayscale` (obs_height, obs_width, 1), 84 x 84 where no size is given. One frame does not tell how fast the ball is
@@ -89,7 +90,7 @@ class PinballEnv(BounceEnv):
     happens). A vector env also takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP),
     `copy` (True), `info` ("all").
 
-    Versions: v0, first release.
+    Versions: v0, first release. What the engine does: docs/physics.md.
     """
 
     game_type = PinballGame

@@ -11,12 +11,12 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from bounce_env.engine.recorded import Recorded
 from bounce_env.envs.base import (
     BounceEnv,
     action_space,
     checked_render_mode,
     checked_seed,
-    episode_replay,
     taken_snapshot,
     world_seed,
 )
@@ -24,6 +24,7 @@ from bounce_env.envs.infos import checked_info, final_info, info_of_ends, info_o
 from bounce_env.envs.keywords import HasKeywords
 from bounce_env.envs.observations import Frames
 from bounce_env.envs.one_world import OneWorld
+from bounce_env.envs.recording import episode_replay, recorded_episode
 from bounce_env.games import episode
 from bounce_env.games.batch import Batch
 from bounce_env.games.reset_options import checked_options, start_rows
@@ -124,7 +125,11 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return self._observations(), self._reset_info(mask)
 
     def checked_reset(self, seed: Any, options: Any) -> tuple[Flags, States | None, npt.NDArray[np.float64]]:
-        """Return mask, snapshot and starts of a reset; raise ValueError where they are not allowed."""
+        """Return what `seed` and `options` of a reset ask for, without doing it: mask, snapshot and starts.
+
+        mask: (worlds,) bool. snapshot: states or None. starts: (worlds, 5), x, y [m], vx, vy [m/s] and the level; NaN
+        for the seed's own. Raises ValueError where they are not allowed.
+        """
         options = checked_options(options)
         mask = self._mask_of("options['reset_mask']", options.pop("reset_mask", None))
         snapshot, options = taken_snapshot(seed, options)
@@ -133,7 +138,11 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return mask, snapshot, start_rows(self._batch.game, self.num_envs, options)
 
     def step(self, actions: Any) -> tuple[Observations, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
-        """One step of every world. Mode DISABLED raises ResetNeeded while a finished world has not been reset.
+        """One step of every world: observations, rewards, terminated, truncated, info.
+
+        Observations and `actions` are those of the card, with an axis for the worlds in front; rewards are (worlds,)
+        float64, terminated and truncated (worlds,) bool.
+        Mode DISABLED raises ResetNeeded while a finished world has not been reset.
 
         Raises ValueError for bad actions, before anything moves, and ClosedEnvironmentError after `close`.
         """
@@ -154,12 +163,17 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         info = self._info_of_ends(over) if ended else {}
         if self._told == "all":
             info |= info_of_worlds(self._batch)
+        elif self._told == "ends" and ended and self._mode != AutoresetMode.SAME_STEP:  # there it is in final_info
+            info |= info_of_worlds(self._batch, over)
         if self._mode == AutoresetMode.DISABLED:
             self._ended = over
         return self._observations(), rewards, terminated, truncated, info
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
-        """One frame (height, width, 3) per world in mode rgb_array."""
+        """Return a frame per world in mode rgb_array, shape (height, width, 3), uint8, each number 0 to 255; else None.
+
+        Raises ResetNeeded before the first reset.
+        """
         if self.render_mode is None:
             gym.logger.warn('render() needs a render mode: gym.make_vec(..., render_mode="rgb_array")')
             return None
@@ -168,7 +182,10 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return tuple(self._frames.frame(w) for w in range(self.num_envs))
 
     def render_world(self, world: int) -> npt.NDArray[np.uint8] | None:
-        """Return the frame of one world in mode rgb_array, None without a render mode."""
+        """Return the frame of one world, shape (height, width, 3), uint8, each number 0 to 255; None without a mode.
+
+        Raises ResetNeeded before its first reset.
+        """
         if self.render_mode is None:
             return None
         if not self._seeded[world]:
@@ -176,11 +193,14 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return self._frames.frame(world)
 
     def scene_of(self, world: int) -> Scene:
-        """Return the scene of the present episode of a world."""
+        """Return the scene of the present episode of a world, 0 to num_envs - 1; raises IndexError for another."""
         return self._batch.scene(world)
 
     def status_of(self, world: int) -> tuple[str, ...]:
-        """Return what a player of a world wants to know beside picture and score, in words."""
+        """Return what a player of a world, 0 to num_envs - 1, wants to know beside picture and score, in words.
+
+        Raises IndexError for another world.
+        """
         return self._batch.status(world)
 
     @property
@@ -199,15 +219,18 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return tuple(OneWorld(self, w) for w in range(self.num_envs))
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """Call a method of every world, see `OneWorld`, or get an attribute; returns one result per world."""
+        """Call the method `name` of every world with `args` and `kwargs`, or get an attribute; one result per world.
+
+        What a world has: `bounce_env.envs.one_world.OneWorld`. Raises AttributeError for what it has not.
+        """
         return tuple(called(world, name, *args, **kwargs) for world in self.worlds)
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """Return an attribute of every world, see `OneWorld`."""
+        """Return the attribute `name` of every world; raises AttributeError for what a world has not."""
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Set an attribute of your own in every world: a list or tuple with one value per world, or one for all.
+        """Set an attribute `name` of your own in every world: a list or tuple with one value per world, or one for all.
 
         Raises ValueError for another number of values, NotImplementedError for what environments have themselves.
         """
@@ -247,15 +270,28 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
         return self._observations()
 
     def record(self, world: int | None) -> None:
-        """Keep all events of one world from its next episode on, for `replay`; None: of none any more."""
+        """Keep all events of one world from its next episode on, for `replay`; None: of none any more.
+
+        Raises ValueError for a world that there is not.
+        """
         self._batch.record(None if world is None else whole("world", world, 0, self.num_envs - 1))
 
     def replay(self, *, last: bool = False) -> Replay:
-        """Return the present episode of the recorded world as a replay, see the single environment."""
+        """Return the present episode of the recorded world as a replay; `last`: the one before it.
+
+        Raises RuntimeError where that was not recorded.
+        """
         return episode_replay(self._batch, self.spec, last=last)
 
+    def recorded(self, *, last: bool = False) -> Recorded:
+        """Return the same as the engine's run, with its ledger: for `ledger_table` and `plot_trajectory`.
+
+        last: the episode before it. Raises RuntimeError as `replay` does.
+        """
+        return recorded_episode(self._batch, last=last)[1]
+
     def close_extras(self, **kwargs: Any) -> None:
-        """End the threads."""
+        """End the threads; Gymnasium's `close` calls it. Raises nothing, and looks at none of `kwargs`."""
         self._batch.close()
 
     def _mask_of(self, name: str, mask: Any) -> Flags:
@@ -316,7 +352,8 @@ class BounceVectorEnv(HasKeywords, VectorEnv[Observations, Any, npt.NDArray[Any]
 def vector_env_of(single: type[BounceEnv]) -> type[BounceVectorEnv]:
     """Return the vector environment of the game of a single one: its card, its keywords, its name with Vector in it.
 
-    The same one each time. Methods that the single environment's class overrides are not in it.
+    The same one each time. Methods that the single environment's class overrides are not in it. See docs/own_game.md.
+    Raises AttributeError for a class without `game_type`.
     """
     made: type[BounceVectorEnv] | None = single.__dict__.get("_vector_env")
     if made is None:

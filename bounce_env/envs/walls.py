@@ -66,7 +66,7 @@ class WallsEnv(BounceEnv):
     in it), `record_events` (False; whether `replay` has what happens). A vector env also takes `num_envs`,
     `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info` ("all").
 
-    Versions: v0, first release.
+    Versions: v0, first release. What the engine does: docs/physics.md.
     """
 
     game_type = WallsGame

@@ -1,4 +1,4 @@
-"""The games, and what a game of your own is made of; docs/architecture.md shows how, tests/env/own_game.py is one.
+"""The games, and what a game of your own is made of; docs/own_game.md shows how, tests/env/own_game.py is one.
 
 A game is a subclass of `Game` with the class of its `Options`, and a named tuple of rules for which `define_game` names
 the functions that the kernel calls; these are compiled by `function`, and build on what is listed here.
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         hold_action,
     )
     from bounce_env.games.game import Game
+    from bounce_env.games.observed import Observed
     from bounce_env.games.options import CONFIG, Options, TimeLimit, options_class
     from bounce_env.games.rules import define_game
     from bounce_env.games.streams import LAUNCHES, uniform
@@ -50,6 +51,7 @@ _HOME = {
         "hold_action",
     ),
     "games.game": ("Game",),
+    "games.observed": ("Observed",),
     "games.options": ("CONFIG", "Options", "TimeLimit", "options_class"),
     "games.rules": ("define_game",),
     "games.streams": ("LAUNCHES", "uniform"),
@@ -72,6 +74,7 @@ __all__ = [
     "Discrete",
     "Game",
     "GameState",
+    "Observed",
     "Options",
     "Pace",
     "TimeLimit",

@@ -25,7 +25,7 @@ def clipped(action: float) -> float:
 
 @dataclass(frozen=True)
 class Continuous:
-    """`size` numbers from -1 to 1; what lies beyond is clipped by the game."""
+    """`size` numbers from -1 to 1; what lies beyond is clipped by the game. See docs/own_game.md."""
 
     size: int
 
@@ -35,7 +35,10 @@ class Continuous:
         return self.size
 
     def controls(self, actions: npt.NDArray[np.generic], worlds: int) -> Controls:
-        """Raises ValueError for another shape or type; whether they are finite the kernel asks."""
+        """Return `actions` as the kernel reads them, (worlds, size) float64.
+
+        Raises ValueError for another shape or type; whether they are finite the kernel asks.
+        """
         if actions.shape != (worlds, self.size) and not self._is_short(actions.shape, worlds):
             each = "one" if self.size == 1 else str(self.size)
             what = f"{worlds * self.size} numbers, {each} per world"
@@ -56,14 +59,17 @@ class Continuous:
 
 @dataclass(frozen=True)
 class Discrete:
-    """One whole number; `codes[number]` is what the kernel reads."""
+    """One whole number; `codes[number]` is what the kernel reads. See docs/own_game.md."""
 
     codes: tuple[float, ...]
 
     width: ClassVar[int] = 1
 
     def controls(self, actions: npt.NDArray[np.generic], worlds: int) -> Controls:
-        """Raises ValueError for another shape or type, and for a number that means nothing."""
+        """Return `actions` as the kernel reads them, (worlds, 1) float64.
+
+        Raises ValueError for another shape or type, and for a number that means nothing.
+        """
         what = f"whole numbers from 0 to {len(self.codes) - 1}"
         if actions.shape != (worlds,) and not (worlds == 1 and actions.shape == ()):
             raise ValueError(f"actions of shape {actions.shape}: must be {worlds} {what}, one per world")
@@ -81,14 +87,20 @@ class Discrete:
 
 @dataclass(frozen=True)
 class Buttons:
-    """`count` buttons, pressed (1) or not (0); the kernel reads one number, of which each button is a bit."""
+    """`count` buttons, pressed (1) or not (0); the kernel reads one number, of which each button is a bit.
+
+    See docs/own_game.md.
+    """
 
     count: int
 
     width: ClassVar[int] = 1
 
     def controls(self, actions: npt.NDArray[np.generic], worlds: int) -> Controls:
-        """Raises ValueError for another shape or type, and for what is neither 0 nor 1."""
+        """Return `actions` as the kernel reads them, (worlds, 1) float64.
+
+        Raises ValueError for another shape or type, and for what is neither 0 nor 1.
+        """
         if actions.shape != (worlds, self.count) and not (worlds == 1 and actions.shape == (self.count,)):
             raise ValueError(
                 f"actions of shape {actions.shape}: must be ({worlds}, {self.count}), 0 or 1 for each button"

@@ -59,7 +59,7 @@ class Batch:
         self.state: State = pack(game.scenes, worlds, own_rows=game.owns_scenes)
         self._written = game.written(self.state, self.rules)
         self.episodes: Array = np.zeros(worlds, EPISODE)
-        self.results: Results = new_results(worlds, len(game.observation_high), len(game.counters))
+        self.results: Results = new_results(worlds, len(game.observed), len(game.counters))
         self.memory: Array | None = None if game.memory is None else np.zeros(worlds, game.memory)
         self.held = np.zeros((worlds, game.actions.width))
         self.counters = np.zeros((worlds, len(game.counters)))

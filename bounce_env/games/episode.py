@@ -51,7 +51,13 @@ class Results(NamedTuple):
 
 
 class GameState(NamedTuple):
-    """All that a game's kernels work on, beside its rules; first axis worlds."""
+    """All that a game's kernels work on, beside its rules; first axis worlds. See docs/own_game.md.
+
+    state: of the engine, with `state.hits` (worlds, elements). episodes: (worlds,) records of EPISODE. memory: what the
+    game's rules remember of a world, or None. held: (worlds, controls) float64, the action in force. counters: (worlds,
+    counters) float64, what the game counts in an episode. start: (worlds, 5), what the options of a reset ask for.
+    results: what a step returns.
+    """
 
     state: State
     episodes: Array  # (worlds,) EPISODE
@@ -100,7 +106,10 @@ def begin_episode(game: GameState, w: int) -> Record:
 
 @function
 def hold_action(game: GameState, actions: Array, w: int, repeat: float) -> None:
-    """Let the action of this step be in force, or, with the probability `repeat` per frame, go on with the last one."""
+    """Let the action of this step be in force, or, with the probability `repeat` per frame, go on with the last one.
+
+    actions: (worlds, controls) float64, each number as the game's `Actions` give it.
+    """
     episode = game.episodes[w]
     if repeat == 0.0 or uniform(episode.seed, STICKY_ACTIONS, episode.frames) >= repeat:
         for j in range(game.held.shape[1]):

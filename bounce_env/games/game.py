@@ -10,17 +10,18 @@ from bounce_env.engine.memory.records import Array
 from bounce_env.engine.memory.state import State
 from bounce_env.games.actions import Actions
 from bounce_env.games.episode import FPS
+from bounce_env.games.observed import Observed
 from bounce_env.games.options import Options
 from bounce_env.scene import Scene, as_scene
 
 
 class Game:
-    """A game with what its user chose: scenes and rules, and what an agent sees and does.
+    """A game with what its user chose: scenes and rules, and what an agent sees and does. See docs/own_game.md.
 
     Raises SceneError where the scene cannot be read; a game raises ValueError where it cannot be played.
 
     options: what its user chose. rules: of a type that is a game (`games.rules`), with a `pace`.
-    observation_low, observation_high: bounds of what is observed.
+    observed: what each number of an observation is, in its order.
     field: x_min, y_min, x_max, y_max [m] of where a ball may be launched by the options of a reset.
     targets: the elements, circular sensors, that `begin` and `play` put where they want them.
     hidden: the elements that pictures do not show: what only the rules or the builder of the table look at.
@@ -38,8 +39,7 @@ class Game:
     actions: Actions
     rules: Any
     field: tuple[float, float, float, float]
-    observation_low: npt.NDArray[np.float32]
-    observation_high: npt.NDArray[np.float32]
+    observed: tuple[Observed, ...]
 
     def __init__(self, options: Options) -> None:
         self.options = options
@@ -51,12 +51,18 @@ class Game:
         """The scene, or name of a built-in one, that is played where the user chose none."""
         raise NotImplementedError
 
+    @property
+    def observation_bounds(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+        """Return the lower and the upper bounds of an observation, (numbers,) float32 each."""
+        low, high = zip(*((number.low, number.high) for number in self.observed), strict=True)
+        return np.array(low, np.float32), np.array(high, np.float32)
+
     def rules_for(self, worlds: int) -> Any:
         """Return the rules for a batch of so many worlds."""
         return self.rules
 
     def written(self, state: State, rules: Any) -> tuple[Array, ...]:
-        """Return what `begin` writes of a batch's scenes and rules, a row for each world; () where nothing is."""
+        """Return what `begin` writes of a batch's `state` and `rules`, of shape (worlds, ...); () where nothing is."""
         return ()
 
     def scene_on(self, level: int | None) -> Scene:

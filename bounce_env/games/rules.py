@@ -40,7 +40,9 @@ def define_game(
     observe: Callable[..., Any],
     step_quietly: Callable[..., bool] | None = None,
 ) -> None:
-    """Let these functions, compiled by `engine.compile.jit.function`, be what the game with this type of rules does.
+    """Let these functions, compiled by `bounce_env.games.function`, be what the game with this type of rules does.
+
+    begin, play, observe, step_quietly: see the head of `bounce_env.games.rules`, and docs/own_game.md.
 
     Of a game outside of the package the kernels that are kept on disk depend on the modules that define the functions,
     and those beside them (`engine.compile.cache.follow_sources`). Raises TypeError for what is no NamedTuple type, and

@@ -38,5 +38,5 @@ def bits(seed: Any, stream: Any, index: int) -> Any:
 
 @function
 def uniform(seed: Any, stream: Any, index: int) -> float:
-    """Return a float in [0, 1), a multiple of 2^-53."""
+    """Return a float in [0, 1), a multiple of 2^-53: that of `index` in a `stream` of `seed`."""
     return np.float64(bits(seed, stream, index) >> _S11) * 2.0**-53

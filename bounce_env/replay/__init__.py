@@ -33,7 +33,10 @@ class Replay:
         return text_of(self.document)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the page, or the document alone where the path ends in .json; returns the path."""
+        """Write the page, or the document alone where the path ends in .json; returns the path.
+
+        Raises OSError where it cannot be written; what was there before is then still there.
+        """
         path = Path(path)
         with replacing(path) as unfinished:
             unfinished.write_text(self.json if path.suffix == ".json" else self.html, encoding="utf-8")
@@ -47,14 +50,17 @@ class Replay:
 def replay_of(
     run: Recorded, *, score: Iterable[tuple[float, float]] = (), lost: int = 0, about: Mapping[str, Any] | None = None
 ) -> Replay:
-    """Return the replay of a recorded run, as of `World.recorded`.
+    """Return the replay of a recorded run, as of `World.recorded`; docs/replay.md says what one is.
 
     score: from what time [s] on it was what. lost: how many events the recording had no room for. about: what made it,
-    as `id`, `kwargs` and `seed` of an environment.
+    as `id`, `kwargs` and `seed` of an environment. Raises nothing.
     """
     return Replay(document_of(run, about=about, score=score, lost=lost))
 
 
 def load_replay(path: str | os.PathLike[str]) -> Replay:
-    """Return the replay in a file, a page or a document alone; raises OSError, and ValueError for what is none."""
+    """Return the replay in the file `path`, a page or a document alone, in the format of docs/replay.md.
+
+    Raises OSError where it cannot be read, and ValueError for what is no replay.
+    """
     return Replay(read_replay(Path(path)))

@@ -49,7 +49,7 @@ A narrower gap is a 2 pi written with too few digits."""
 @own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Ball(Spec):
-    """The ball: a disc, or with radius 0 the tutorial's point.
+    """The ball: a disc, or with radius 0 the tutorial's point. What it does: docs/physics.md, "Flight".
 
     radius: metres, 0 or more. b: bounciness, 0 or more. f: friction, 0 (all lost) to 1 (none).
     """
@@ -74,11 +74,11 @@ class _Surface(Spec):
 @own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Wall(_Surface):
-    """A segment that bounces the ball on both sides and at its ends.
+    """A segment that bounces the ball on both sides and at its ends; docs/physics.md, "Bounce law".
 
     start, end: its ends (x, y) in metres, two different points. b: bounciness, 0 or more. f: friction, 0 (all
-    lost) to 1 (none). kick: speed in m/s added along the normal when the approach is faster than
-    kick_threshold (m/s). cooldown: seconds after a kick in which the wall gives no other. one_way: True
+    lost) to 1 (none). kick: speed in m/s added along the normal. kick_threshold: m/s, the kick is
+    given where the approach is faster. cooldown: seconds after a kick in which the wall gives no other. one_way: True
     bounces a ball that comes from the left of start -> end only; from the right it passes freely, and the ends
     never bounce. name: unique in the scene, or "" for none.
 
@@ -140,7 +140,7 @@ class Wall(_Surface):
 @own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Bumper(_Surface):
-    """A circle that bounces the ball outside of it, and may move to and fro on a rail.
+    """A circle that bounces the ball outside of it, and may move to and fro on a rail; docs/physics.md, "Elements".
 
     center: (x, y) in metres. radius: metres, > 0. rail_end: where its centre turns back, (x, y) in metres, if it moves
     to there and back from `center`; None for a bumper that stands. speed: at which it does so, m/s, 0 (it stands at
@@ -173,6 +173,8 @@ class Bumper(_Surface):
 @dataclass(frozen=True, config=CONFIG)
 class Arc(_Surface):
     """A part of a circle's line that bounces the ball from inside, from outside and at its ends.
+
+    How a ball slides along it: docs/physics.md, "Slides on curves".
 
     center: (x, y) in metres. radius: metres, > 0. start_angle, end_angle: radians from the x axis; the arc goes
     counter-clockwise from start to end, by more than 0 and at most 2 pi; by 2 pi (to 1e-12) it is a closed
@@ -232,7 +234,7 @@ def _rounded(share: float) -> float:
 @own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Paddle(_Surface):
-    """A capsule that moves on a straight rail between two stops.
+    """A capsule that moves on a straight rail between two stops; docs/physics.md, "Parts".
 
     rail_start, rail_end: where its centre stops, (x, y) in metres, two different points; it starts between
     them. half_width: how far its core, a segment parallel to the rail, reaches to each side of the centre,
@@ -262,6 +264,8 @@ class Paddle(_Surface):
 @dataclass(frozen=True, config=CONFIG)
 class Flipper(_Surface):
     """A capsule that turns about a pivot between two angles: pressed towards the one, released back to the other.
+
+    How it meets balls: docs/physics.md, "Parts" and "Time of impact".
 
     pivot: (x, y) in metres, the middle of its round end. length: from there to the middle of the other end, metres,
     > 0. radius: thickness around that line, metres, > 0. rest_angle, active_angle: of the line, radians from the x
@@ -303,11 +307,17 @@ class Flipper(_Surface):
 
 
 Element: TypeAlias = Wall | Bumper | Arc | Paddle | Flipper | Sensor | Field
+"""What a scene is made of."""
+
 Part: TypeAlias = Paddle | Flipper | Bumper | Wall
+"""What may move."""
 
 
 def moves(element: Element) -> bool:
-    """Return whether an element moves: as it is commanded, or a bumper by itself."""
+    """Return whether an element is a part (docs/physics.md, "Parts"): it moves as commanded, or a bumper by itself.
+
+    element: any; raises nothing.
+    """
     match element:
         case Paddle() | Flipper():
             return True

@@ -31,6 +31,8 @@ class Problem:
 class SceneError(ValueError):
     """A scene, or a part of one, that is not allowed; its text is one line for each thing that is wrong.
 
+    What is allowed: docs/scenes.md.
+
     problems: the same for programs, where the scene could be read at all.
     """
 

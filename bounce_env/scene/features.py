@@ -9,7 +9,7 @@ from bounce_env.wording import shown, unknown_name
 
 
 class Feature(StrEnum):
-    """What costs time, memory and compiling only where it is there.
+    """What costs time, memory and compiling only where it is there; docs/architecture.md says how it is left out.
 
     Numbers cost nothing of this kind: `b`, `f`, kicks, `rest_speed` and `max_speed` are read at run time.
     """

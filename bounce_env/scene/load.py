@@ -27,7 +27,7 @@ _Spec = TypeVar("_Spec", bound=Scene | Ball | Element)
 
 
 def builtin_scenes() -> tuple[str, ...]:
-    """Return the names of the scenes that come with the package, sorted."""
+    """Return the names of the scenes that come with the package, sorted; docs/scenes.md says what they are for."""
     return tuple(sorted(Path(item.name).stem for item in _BUILTIN.iterdir() if item.name.endswith(".toml")))
 
 
@@ -35,7 +35,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     """Return the scene of a TOML file, or a built-in scene.
 
     source: the path of a .toml file; or, as text without path separator and without .toml, the name of one of
-    `builtin_scenes()`. scene/builtin/paddle.toml describes the format.
+    `builtin_scenes()`. docs/scenes.md describes the format.
 
     Raises SceneError if there is no such scene, if the file cannot be read or is not TOML (naming the line),
     and for all that is wrong in it, one line each: file, element, field, value and what is allowed.
@@ -57,9 +57,9 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
 
 
 def as_scene(source: str | os.PathLike[str] | Scene | Mapping[str, Any]) -> Scene:
-    """The scene that a user gave in any form: itself, its contents as `scene_to_dict` gives them, its name or path.
+    """Return the scene that a user gave as `source`, in any form: itself, its contents (`scene_to_dict`), name or path.
 
-    Raises SceneError as `load_scene` does.
+    Raises SceneError as `load_scene` does. The format: docs/scenes.md.
     """
     if isinstance(source, Scene):
         return source
@@ -79,9 +79,9 @@ def _parse(data: bytes, source: str) -> Scene:
 
 
 def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
-    """Return the scene of a TOML file's contents, nested dicts and lists; `source` is what messages call it.
+    """Return the scene of a TOML file's contents `data`, nested dicts and lists; `source` is what messages call it.
 
-    Raises SceneError with a line for each thing that is wrong.
+    Raises SceneError with a line for each thing that is wrong. The format: docs/scenes.md.
     """
     return _read(data, source, dict)
 
@@ -195,7 +195,8 @@ def _field_names(spec: type[Scene | Ball]) -> str:
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
     """Return the contents of a scene as JSON and TOML have them, from which `scene_from_dict` makes an equal one.
 
-    Nested dicts and lists of text, numbers and flags; what is None is left out.
+    Nested dicts and lists of text, numbers and flags; what is None is left out. The format: docs/scenes.md. Raises
+    nothing.
     """
     elements = [{"type": type(e).__name__.lower(), **_contents(e)} for e in scene.elements]
     return {**_contents(scene, "ball", "elements"), "ball": _contents(scene.ball), "elements": elements}
@@ -211,7 +212,10 @@ def _as_lists(value: object) -> object:
 
 
 def dump_scene(scene: Scene) -> str:
-    """Return the scene as the text of a TOML file, from which `load_scene` returns an equal one, bit for bit."""
+    """Return the scene as the text of a TOML file, from which `load_scene` returns an equal one, bit for bit.
+
+    The format: docs/scenes.md. Raises nothing.
+    """
     ball = "\n".join(["[ball]", *_assignments(scene.ball)])
     elements = (
         "\n".join(["[[elements]]", f'type = "{type(element).__name__.lower()}"', *_assignments(element)])

@@ -36,6 +36,8 @@ _FORMS = "a sensor is a segment (start and end) or a circle (center and radius)"
 class Sensor(Spec):
     """A segment or a circle that reports the ball's centre, and never bounces.
 
+    When: docs/physics.md, "Sensors, fields, drag".
+
     start, end: the ends (x, y) of a segment in metres, two different points; it reports each crossing.
     center, radius: instead of them, a circle, (x, y) and > 0 in metres; it reports when the centre comes in.
     drain: True takes the ball out of play there. name: unique in the scene, or "" for none.
@@ -95,7 +97,7 @@ class Sensor(Spec):
 @own_words_of_scenes
 @dataclass(frozen=True, config=CONFIG)
 class Field(Spec):
-    """A region in which a constant acceleration is added to gravity.
+    """A region in which a constant acceleration is added to gravity; docs/physics.md, "Sensors, fields, drag".
 
     points: the corners (x, y) of a strictly convex polygon in metres, three or more, in either sense of
     rotation. acceleration: (x, y) in m/s^2, acts while the ball's centre is inside. name: unique in the scene,

@@ -33,7 +33,7 @@ def _tuple(value: object) -> tuple[object, ...]:
 @own_words_of_scenes
 @dataclass(frozen=True, kw_only=True, config=CONFIG)
 class Scene(Spec):
-    """A table: gravity, the ball and the elements.
+    """A table: gravity, the ball and the elements; docs/scenes.md has all of them with pictures.
 
     gravity: acceleration (x, y) in m/s^2. ball: what every ball in play is like. rest_speed: m/s, 0 or more;
     where gravity presses the ball on a surface, an approach slower than it is absorbed and the ball slides on

@@ -140,7 +140,10 @@ def agent_file(env_id: str) -> str:
 
 
 def load_agent(env_id: str) -> Agent:
-    """The trained agent of an environment, such as "Bounce/Pinball-v0". Raises ValueError where there is none."""
+    """Return the trained agent that comes for `env_id`, such as "Bounce/Pinball-v0".
+
+    How it was trained: docs/training.md. Raises ValueError where there is none.
+    """
     if env_id not in shipped_agents():
         known = ", ".join(shipped_agents()) or "none"
         raise ValueError(f"env_id = {shown(env_id)}: must be one of {known}{nearest(env_id, shipped_agents())}")

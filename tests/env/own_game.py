@@ -3,7 +3,6 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
 from pydantic.dataclasses import dataclass
 
 from bounce_env import Ball, Paddle, Scene, Sensor, Wall
@@ -103,8 +102,13 @@ class OwnGame(g.Game):
         self.rules = Rules(g.pace_of(options))
         self.actions = g.Continuous(1)
         self.field = (0.0, 0.0, 1.0, 1.0)
-        self.observation_high = np.array([1.0, 1.0, 4.0, 4.0, 1.0], np.float32)
-        self.observation_low = -self.observation_high
+        self.observed = (
+            g.Observed("ball x", "left wall -1, right wall 1", -1.0, 1.0),
+            g.Observed("ball y", "drain -1, top 1", -1.0, 1.0),
+            g.Observed("ball velocity x", "m/s", -4.0, 4.0),
+            g.Observed("ball velocity y", "m/s", -4.0, 4.0),
+            g.Observed("paddle", "left stop -1, right stop 1", -1.0, 1.0),
+        )
 
 
 class OwnEnv(BounceEnv):

@@ -42,8 +42,12 @@ def test_less_is_said_of_the_same_play(env_id, mode):
         over = of_all[2] | of_all[3]
         ends += int(over.sum())
         in_every_step = {"score", "_score", "ball", "_ball"}
-        assert set(of_ends[4]) == set(of_all[4]) - in_every_step
-        assert_same(of_ends[4], {key: of_all[4][key] for key in of_ends[4]})
+        at_ends = in_every_step if over.any() and mode != "SAME_STEP" else set()  # in that mode they are in final_info
+        assert set(of_ends[4]) == set(of_all[4]) - in_every_step | at_ends
+        assert_same(*({key: said[4][key] for key in set(of_ends[4]) - at_ends} for said in (of_ends, of_all)))
+        for key in at_ends - {"_score", "_ball"}:
+            np.testing.assert_array_equal(of_ends[4][f"_{key}"], over)
+            np.testing.assert_array_equal(of_ends[4][key], np.where(over, of_all[4][key], 0))
         kept = {"final_obs", "_final_obs"} if over.any() and mode == "SAME_STEP" else set()
         assert set(of_none[4]) == kept
         assert_same(of_none[4], {key: of_all[4][key] for key in kept})

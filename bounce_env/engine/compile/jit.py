@@ -41,9 +41,10 @@ INLINED = {
 
 
 def function(python_function: F) -> F:
-    """Compile a function that kernels call; Python calls it through `from_python`.
+    """Compile `python_function`, which kernels call; Python calls it through `from_python`. See docs/own_game.md.
 
-    It may read and write arrays, but neither make nor return them.
+    It may read and write arrays, but neither make nor return them. What Numba cannot compile raises Numba's error when
+    the first kernel is compiled that calls it.
     """
     compiled: F = numba.njit(**INLINED)(python_function)
     return compiled

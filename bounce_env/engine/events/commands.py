@@ -20,7 +20,7 @@ def command(state: State, w: int, m: int, velocity: float) -> None:
 
 @where("ends")
 def command_ends(state: State, w: int, m: int, start: tuple[float, float], end: tuple[float, float]) -> None:
-    """Let the ends of the dragged wall `m` move at these velocities [m/s], as far as they may."""
+    """Let the ends of the dragged wall `m` move at the velocities `start` and `end` [m/s], as far as they may."""
     ends, (vx0, vy0), (vx1, vy1) = state.ends[w, m], start, end
     apply_drag(state, w)
     if vx0 != ends.cx0 or vy0 != ends.cy0 or vx1 != ends.cx1 or vy1 != ends.cy1:

@@ -51,9 +51,10 @@ def run(
 ) -> int:
     """Process the events of world `w` up to and including an instant; DONE, BUDGET_SPENT, PAGE_FULL or BOUNCED.
 
-    At most `max_events` of them since `resume`, and no more where there have been `bounces` since reset. paged: stop
-    where the recording of this world has no room for another event, which is otherwise left out of it.
-    Unless DONE, the world's time is that of its last event, and the next call goes on from there.
+    until_hi, until_lo: the instant, seconds since reset, as the sum of two floats. At most `max_events` events are
+    processed since `resume`, and no more where there have been `bounces` since reset. paged: stop where the recording
+    of this world has no room for another event, which is otherwise left out of it. Unless DONE, the world's time is
+    that of its last event, and the next call goes on from there.
     """
     world = state.worlds[w]
     keep_moment(state, w)

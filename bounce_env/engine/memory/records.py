@@ -174,6 +174,8 @@ LEDGER = record(
     time="f8", ball="i8", element="i8", kind="i8", x="f8", y="f8", nx="f8", ny="f8",
     vx0="f8", vy0="f8", vx1="f8", vy1="f8", ux="f8", uy="f8",
 )  # fmt: skip
+"""The columns of a ledger: `World.advance` explains them."""
+
 RECORDING = record(
     world="i8",  # that is recorded, or NO_WORLD
     rows="i8", moments="i8", lost="i8",  # of the ledger and of the moments in use; how many found no room
@@ -192,12 +194,18 @@ CONTACTS_OF_BALL = 8
 
 
 class Status(IntEnum):
-    """How a ball is after a call."""
+    """How a ball is after a call; docs/physics.md, "Order, budget, status".
 
-    OK = 0  # in play, at the time that was asked for
-    BUDGET = 1  # in play, but the call ran out of events: the next one goes on from the last event
-    CRUSHED = 2  # caught between closing parts, which stand until a command opens the gap
-    OUT = 3  # out of play: it has crossed a drain
+    - OK (0): in play, at the time that was asked for.
+    - BUDGET (1): in play, but the call ran out of events: the next one goes on from the last event.
+    - CRUSHED (2): caught between closing parts, which stand until a command opens the gap.
+    - OUT (3): out of play: it has crossed a drain.
+    """
+
+    OK = 0
+    BUDGET = 1
+    CRUSHED = 2
+    OUT = 3
 
 
 class Counts(NamedTuple):
@@ -211,16 +219,26 @@ class Counts(NamedTuple):
 
 
 class EventKind(IntEnum):
-    """What a row of the ledger tells of."""
+    """What a row of the ledger tells of; docs/physics.md, "Ledger".
 
-    BOUNCE = 0  # a ball bounced from an element, or from another ball
-    CONTACT_BEGINS = 1  # from now on the ball slides or rests on the element
-    CONTACT_ENDS = 2  # it no longer does
-    SENSOR = 3  # the ball's centre crossed a sensor
-    PART_STOPS = 4  # a part came to a stop, turned back, or was blocked; ball -1
-    CRUSHED = 5  # a closing part crushed the ball
-    ABSORBED = 6  # as a bounce, of balls that lie on each other: too slow to rebound
-    CORNER_BOUNCE = 7  # an element's share in a bounce from several of them at once
+    - BOUNCE (0): a ball bounced from an element, or from another ball.
+    - CONTACT_BEGINS (1): from now on the ball slides or rests on the element.
+    - CONTACT_ENDS (2): it no longer does.
+    - SENSOR (3): the ball's centre crossed a sensor.
+    - PART_STOPS (4): a part came to a stop, turned back, or was blocked; `ball` is -1.
+    - CRUSHED (5): a closing part crushed the ball.
+    - ABSORBED (6): as a bounce, of balls that lie on each other: too slow to rebound.
+    - CORNER_BOUNCE (7): an element's share in a bounce from several of them at once.
+    """
+
+    BOUNCE = 0
+    CONTACT_BEGINS = 1
+    CONTACT_ENDS = 2
+    SENSOR = 3
+    PART_STOPS = 4
+    CRUSHED = 5
+    ABSORBED = 6
+    CORNER_BOUNCE = 7
 
     @property
     def words(self) -> str:

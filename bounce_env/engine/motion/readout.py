@@ -12,7 +12,10 @@ from bounce_env.engine.motion.path import motion_after
 
 @function
 def ball_now(state: State, w: int, k: int) -> tuple[float, float, float, float]:
-    """Return where ball `k` is now and how fast: (x, y, vx, vy). A drained ball stays where it crossed the drain."""
+    """Return where ball `k` is now and how fast: x, y [m], vx, vy [m/s].
+
+    A drained ball stays where it crossed the drain.
+    """
     ball, world = state.balls[w, k], state.worlds[w]
     if ball.status == OUT:
         return ball.x, ball.y, ball.vx, ball.vy
@@ -40,7 +43,10 @@ def offset_now(state: State, w: int, m: int) -> float:
 
 @where("parts", otherwise=0.0)
 def stroke_now(state: State, w: int, m: int) -> float:
-    """Return the same as a share of the way from stop to stop; rounding may leave it just beyond 0 or 1."""
+    """Return how far part `m` is on its way now, as a share of that from stop to stop.
+
+    Rounding may leave it just beyond 0 or 1.
+    """
     return offset_now(state, w, m) / state.parts[state.worlds[w].scene, m].span
 
 

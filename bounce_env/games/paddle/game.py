@@ -8,7 +8,8 @@ from bounce_env.engine.memory.records import Array
 from bounce_env.engine.memory.state import State
 from bounce_env.games.actions import Continuous, Discrete
 from bounce_env.games.game import Game
-from bounce_env.games.paddle.levels import bumper_bounds, level_scene
+from bounce_env.games.observed import Observed, held, place_of, velocity_of
+from bounce_env.games.paddle.levels import FIELD_ENDS, level_scene, observed_bumpers
 from bounce_env.games.paddle.observe import observe
 from bounce_env.games.paddle.rules import begin, play, step_quietly
 from bounce_env.games.paddle.setup import LAUNCH_SPEED, REFERENCE_SPEED, PaddleOptions, Rules, field_of, new_rules
@@ -39,11 +40,14 @@ class PaddleGame(Game):
         scene = self.scenes[0]
         assert scene.max_speed is not None
         speed = speed_bound(max(scene.max_speed, LAUNCH_SPEED), scene.gravity, width, height) / REFERENCE_SPEED
-        bounds = [1.0, 1.0, speed, speed, 1.0, *bumper_bounds(self.rules.levels)]
+        self.observed = (
+            *place_of("ball", *FIELD_ENDS),
+            *velocity_of("ball", REFERENCE_SPEED, speed),
+            Observed("paddle", "left stop -1, right stop 1", -1.0, 1.0),
+            *observed_bumpers(self.rules.levels),
+        )
         if options.repeat_action_probability > 0.0:
-            bounds.append(1.0)
-        self.observation_high = np.array(bounds, np.float32)
-        self.observation_low = -self.observation_high
+            self.observed += held(["velocity of the paddle"], -1.0)
 
     @property
     def default_scene(self) -> str:

@@ -14,6 +14,7 @@ from bounce_env.engine.compile.jit import Record, from_python, function, where
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.memory.state import State
 from bounce_env.engine.motion.readout import offset_now
+from bounce_env.games.observed import Observed, place_of, velocity_of
 from bounce_env.games.options import END_OF_LEVELS
 from bounce_env.games.playfield import place_seen
 from bounce_env.games.streams import LAYOUTS, LEVELS, uniform
@@ -190,11 +191,22 @@ def _fits(bumpers: Array, levels: Levels, scene: int, placed: int) -> bool:
 _arranged = from_python(arrange)
 
 
-def bumper_bounds(levels: Levels) -> list[float]:
-    """Return the greatest of each number of `observe_bumpers`, either way."""
+FIELD_ENDS = ("left wall", "right wall", "drain", "top")
+"""What is at -1 and 1 along x and along y, as places are observed."""
+
+
+def observed_bumpers(levels: Levels) -> tuple[Observed, ...]:
+    """Return what each number of `observe_bumpers` is."""
     fastest = max(1.0, levels.bumpers["speed"].max(initial=0.0) / FASTEST)
-    rider = [1.0, 1.0, fastest, fastest, 1.0, 1.0, 1.0, 1.0]
-    return [bound for bumper in levels.bumpers[0] for bound in (rider if bumper["part"] >= 0 else [1.0, 1.0])]
+    observed: tuple[Observed, ...] = ()
+    for j, bumper in enumerate(levels.bumpers[0]):
+        name = f"bumper {j}"
+        observed += place_of(name, *FIELD_ENDS)
+        if bumper["part"] >= 0:
+            observed += velocity_of(name, FASTEST, fastest)
+            observed += place_of(f"{name}, first end of its rail,", *FIELD_ENDS)
+            observed += place_of(f"{name}, second end of its rail,", *FIELD_ENDS)
+    return observed
 
 
 @function

@@ -1,6 +1,7 @@
 """The pinball game for a batch of worlds."""
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,16 +11,24 @@ from bounce_env.engine.compile.jit import interpreted
 from bounce_env.games.actions import Buttons, Discrete
 from bounce_env.games.episode import FPS
 from bounce_env.games.game import Game
+from bounce_env.games.observed import Observed, held, place_of, share, velocity_of
 from bounce_env.games.pinball.observe import REFERENCE_SPEED, observe
+from bounce_env.games.pinball.points import FARMED, HIGHEST_MULTIPLIER
 from bounce_env.games.pinball.rules import begin, play, step_quietly
 from bounce_env.games.pinball.serve import LAUNCH_SPEED
 from bounce_env.games.pinball.setup import (
+    HOLD_FRAMES,
     MEMORY,
     NUDGE,
+    NUDGE_FRAMES,
     NUDGE_LEFT,
     NUDGE_RIGHT,
+    REST_FRAMES,
     ROLLOVER,
+    SAVE_FRAMES,
+    STUCK_FRAMES,
     TARGET,
+    TILT,
     Layout,
     PinballOptions,
     Rules,
@@ -31,6 +40,7 @@ from bounce_env.games.pinball.setup import (
 from bounce_env.games.playfield import speed_bound
 from bounce_env.games.rules import define_game
 from bounce_env.games.timing import pace_of
+from bounce_env.scene import Field, Sensor
 
 REWARD_PER_BALL = -2.0  # for every ball that is lost, unless the reward is the score, which knows nothing of it
 define_game(Rules, begin=begin, play=play, observe=observe, step_quietly=step_quietly)
@@ -76,7 +86,7 @@ class PinballGame(Game):
         self.actions = Buttons(4 if options.nudge else 2) if options.action == "buttons" else Discrete(codes)
         self.field = outline(self.scenes[0])
         self.hidden = hidden_of(self.scenes[0])
-        self.observation_low, self.observation_high = self._bounds(layout, options)
+        self.observed = tuple(self._observed(layout, options))
 
     @property
     def default_scene(self) -> str:
@@ -102,20 +112,43 @@ class PinballGame(Game):
             words.append(f"Ball save {math.ceil(save / FPS)} s")
         return (*words, *super().status(episode, memory))
 
-    def _bounds(
-        self, layout: Layout, options: PinballOptions
-    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-        """Return of what is observed."""
+    def _observed(self, layout: Layout, options: PinballOptions) -> Iterator[Observed]:
+        """Return what `observe` writes, number by number."""
         scene = self.scenes[0]
         x0, y0, x1, y1 = self.field
         assert scene.max_speed is not None
         fastest = max(scene.max_speed, LAUNCH_SPEED[1]) + (math.hypot(*NUDGE) if options.nudge else 0.0)
         speed = speed_bound(fastest, scene.gravity, x1 - x0, y1 - y0) / REFERENCE_SPEED
-        flippers = int(np.count_nonzero(layout.sides[0]))
-        table = layout.tables[0]
-        shares = flippers + 8 + int(table["targets"]) + int(table["rollovers"]) + layout.bumpers.shape[1]
-        buttons = 4 if options.nudge else 2
-        shares += 2 * options.nudge + (buttons if options.repeat_action_probability > 0.0 else 0)
-        high = np.array([1.0, 1.0, speed, speed] + [1.0] * shares, np.float32)
-        low = np.array([-1.0, -1.0, -speed, -speed] + [0.0] * shares, np.float32)
-        return low, high
+        yield from place_of("ball", "left of the table", "right", "bottom of the table", "top")
+        yield from velocity_of("ball", REFERENCE_SPEED, speed)
+        flippers = [part.name for m, (_, part) in enumerate(scene.parts) if layout.sides[0, m]]
+        yield from (share(in_words(name), "0 down, 1 up") for name in flippers)
+        yield share("balls left, this one included", "of `balls`")
+        yield share("time for which a lost ball is still given back", f"of {SAVE_FRAMES / FPS:g} s")
+        held_time = "time that the ball has been at the flippers; at 1 they are released until it leaves"
+        yield share(held_time, f"of {HOLD_FRAMES / FPS:g} s")
+        yield share("multiplier", f"of {HIGHEST_MULTIPLIER}")
+        yield share("hits of bumpers and slingshots since a flipper's touch", f"of {FARMED}")
+        yield share("time without points or a touch of a flipper", f"of {STUCK_FRAMES / FPS:g} s")
+        for side in ("left", "right"):
+            yield share(f"time until the {side} button acts again", f"of {REST_FRAMES / FPS:g} s")
+        for role in (TARGET, ROLLOVER):
+            lamps = [e.name for e, known in zip(scene.elements, layout.roles[0], strict=True) if known == role]
+            yield from (share(in_words(name), "1: it is lit") for name in lamps)
+        for i in layout.bumpers[0].tolist():
+            bumper = scene.elements[i]
+            assert not isinstance(bumper, Sensor | Field)
+            yield share(f"{in_words(bumper.name)}: what is left of its cooldown", f"of {bumper.cooldown:g} s")
+        if options.nudge:
+            yield share("tilt meter", f"of {TILT:g}; 1: tilted")
+            yield share("time until the next nudge", f"of {NUDGE_FRAMES / FPS:g} s")
+        if options.repeat_action_probability > 0.0:
+            yield from held(
+                ("left button", "right button", "nudge left", "nudge right")[: 4 if options.nudge else 2], 0.0
+            )
+
+
+def in_words(name: str) -> str:
+    """Return how one speaks of an element: left flipper, for flipper_left."""
+    words = {"flipper_left": "left flipper", "flipper_right": "right flipper"}
+    return words.get(name, name.replace("_", " ").replace("rollover", "rollover lane"))

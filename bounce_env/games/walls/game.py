@@ -10,6 +10,7 @@ from bounce_env.engine.memory.state import State
 from bounce_env.games.actions import Continuous
 from bounce_env.games.episode import FPS
 from bounce_env.games.game import Game
+from bounce_env.games.observed import held, place_of, share, velocity_of
 from bounce_env.games.playfield import speed_bound
 from bounce_env.games.rules import define_game
 from bounce_env.games.walls.observe import observe
@@ -49,10 +50,20 @@ class WallsGame(Game):
         scene = self.scenes[0]
         assert scene.max_speed is not None
         speed = speed_bound(scene.max_speed, scene.gravity, width, height) / REFERENCE_SPEED
-        held = [1.0] * CONTROLS if options.repeat_action_probability > 0.0 else []
-        self.observation_high = np.array([1.0, 1.0, speed, speed, *[1.0] * 8, *held], np.float32)
-        self.observation_low = -self.observation_high
-        self.observation_low[10:12] = 0.0
+        ends = ("left wall", "right wall", "drain", "top")
+        self.observed = (
+            *place_of("ball", *ends),
+            *velocity_of("ball", REFERENCE_SPEED, speed),
+            *place_of("first end of the wall", *ends),
+            *place_of("second end of the wall", *ends),
+            *place_of("target", *ends),
+            share("time that the ball has left", f"of {BALL_FRAMES / FPS:g} s"),
+            share("balls left, this one included", "of `balls`"),
+        )
+        if options.repeat_action_probability > 0.0:
+            self.observed += held(
+                [f"velocity {axis} of the {end} end" for end in ("first", "second") for axis in "xy"], -1.0
+            )
         self.targets = (int(self.rules.courts["target"][0]),)
 
     @property

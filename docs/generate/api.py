@@ -1,0 +1,115 @@
+"""The API pages: signatures as they are written, and docstrings, which are Markdown."""
+
+import ast
+import inspect
+import re
+from functools import cache
+
+from generate.public import Public, definition_of, home_of_data, parameters_of, public_names, returned
+
+_CARDS = {
+    f"{game}{kind}": f"/environments/{game.lower()}.md"
+    for game in ("Pinball", "Paddle", "Walls")
+    for kind in ("Env", "VectorEnv")
+}
+"""The pages of classes whose docstrings are shown there whole."""
+
+_CITED = re.compile(r"docs/([\w/]+)\.md(?:, (?:section )?\"([^\"]+)\")?")
+
+
+def api(names: str) -> str:
+    """Return what describes public names, each with its members: World, WorldBatch ... with blanks between them."""
+    described = {public.path: public for public in _all() if public.owner is None}
+    return "\n\n".join(_described(described[name]) for name in names.split())
+
+
+@cache
+def _all() -> tuple[Public, ...]:
+    return tuple(public_names())
+
+
+def source_module(path: str) -> str | None:
+    """Return the module whose source a public name is in: what `[source]` shows."""
+    public = next((public for public in _all() if public.path == path), None)
+    if public is None:
+        return None
+    if public.kind == "data":
+        return home_of_data(public)
+    return getattr(public.function, "__module__", None) if public.owner is None else public.owner.__module__
+
+
+def linked(doc: str) -> str:
+    """Return a docstring in which each page that it cites is a link: docs/physics.md, "Bounce law"."""
+
+    def link(cited: re.Match[str]) -> str:
+        anchor = "" if cited[2] is None else "#" + re.sub(r"[^\w -]", "", cited[2].lower()).replace(" ", "-")
+        return f"[{cited[0]}](/{cited[1]}.md{anchor})"
+
+    return _CITED.sub(link, doc)
+
+
+def signature_of(public: Public) -> str:
+    """Return the parameters as they are written, annotations and defaults included; nothing of data."""
+    if public.kind in ("data", "property", "exception"):
+        return ""
+    if public.kind != "class":
+        result = returned(public)
+        arguments = ", ".join(_written(public))
+        return f"({arguments})" + (f" -> {result}" if result else "")
+    if "__init__" in vars(public.value) and not hasattr(public.value, "__dataclass_fields__"):
+        constructor = Public(public.module, "__init__", public.value.__init__, public.value)
+        return f"({', '.join(_written(constructor))})"
+    try:
+        parameters = inspect.signature(public.value).parameters.values()
+    except ValueError:
+        return ""
+    return f"({', '.join(str(p.replace(annotation=p.empty)) for p in parameters if p.name not in ('args', 'kwargs'))})"
+
+
+def _written(public: Public) -> list[str]:
+    """Return each parameter of a function with its default, and the bare * and / between them."""
+    parameters = inspect.signature(public.function).parameters.values()
+    annotations = dict(parameters_of(public))
+    written, keyword_only = [], False
+    for p in parameters:
+        if p.name in ("self", "cls"):
+            continue
+        if p.kind is p.KEYWORD_ONLY and not keyword_only:
+            keyword_only = True
+            written.append("*")
+        star = {p.VAR_POSITIONAL: "*", p.VAR_KEYWORD: "**"}.get(p.kind, "")
+        keyword_only = keyword_only or star == "*"
+        note = f": {annotations[p.name]}" if annotations.get(p.name) else ""
+        default = "" if p.default is p.empty else f" = {_default(public, p.name)}"
+        written.append(f"{star}{p.name}{note}{default}")
+    return written
+
+
+def _default(public: Public, name: str) -> str:
+    """Return a default as it is written."""
+    arguments = definition_of(public.function).args
+    plain = [*arguments.posonlyargs, *arguments.args]
+    defaults = dict(
+        zip([a.arg for a in plain[len(plain) - len(arguments.defaults) :]], arguments.defaults, strict=True)
+    )
+    defaults |= {a.arg: d for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True) if d is not None}
+    return ast.unparse(defaults[name])
+
+
+def _described(public: Public) -> str:
+    members = [member for member in _all() if member.path.startswith(f"{public.path}.")]
+    inside = "\n\n".join(_directive(member, member.path.rpartition(".")[2], "````", "") for member in members)
+    return _directive(public, public.path, "`````", inside)
+
+
+def _directive(public: Public, name: str, fence: str, inside: str) -> str:
+    options = [f":module: {public.module}"] if public.owner is None else []
+    # The pages of sources lead back by one module for all that is in a file.
+    back = f'<a id="bounce_env.{name}"></a>\n\n' if public.module == "bounce_env.scene" else ""
+    if isinstance(public.value, classmethod):
+        options.append(":classmethod:")
+    doc = public.doc
+    if name in _CARDS:
+        doc = doc.split("\n\n")[0] + f"\n\nIts card: [{_CARDS[name]}]({_CARDS[name]})."
+    lines = [f"{fence}{{py:{public.kind}}} {name}{signature_of(public)}", *options, "", linked(doc), "", inside]
+    return back + "\n".join([*lines, fence])

@@ -1,0 +1,100 @@
+"""A page for each environment: its card, and what the card leaves to the code, number by number."""
+
+import inspect
+import re
+from typing import Any
+
+import gymnasium as gym
+
+import bounce_env
+from bounce_env.registration import short_name
+from generate.api import linked
+from generate.baselines import baselines
+from generate.pictures import film
+
+_HEADINGS = {
+    "Action": "Actions",
+    "Actions": "Actions",
+    "Points": "Points",
+    "Observation": "Observation",
+    "Levels": "Levels",
+    "Reward": "Reward",
+    "Start": "Start",
+    "End": "End",
+    "Info": "Info",
+    "Keyword arguments": "Keyword arguments",
+    "Versions": "Versions",
+}
+"""With what a paragraph of a card begins, and the heading that it gets."""
+
+
+def card(env_id: str) -> str:
+    """Return the page of an environment, below its title."""
+    env: Any = gym.make(env_id).unwrapped
+    doc = inspect.cleandoc(type(env).__doc__)
+    name = type(env).__name__.removesuffix("Env")
+    return "\n\n".join(
+        [
+            f"![A trained agent plays {env_id}]({film(env_id)})",
+            _facts(env, env_id),
+            linked(_with_headings(doc)),
+            "## Observation, index by index",
+            f'What `gym.make("{env_id}").unwrapped.observed` says: of the built-in scene, with default keywords.',
+            observation_table(env),
+            *(_levels(env_id) if "num_levels" in env.defaults() else []),
+            "## Keyword arguments and defaults",
+            _keywords(env),
+            "## Baselines",
+            baselines(name),
+            "How they were measured, and what N is: [training and protocol](/training.md).",
+        ]
+    )
+
+
+def _facts(env: Any, env_id: str) -> str:
+    module = f"{type(env).__module__}:{type(env).__name__}"
+    agent = f'`bounce_env.load_agent("{env_id}")`; `bounce-env watch {short_name(env_id)}`'
+    rows = {
+        "make": f'`gym.make("{env_id}")`, `gym.make_vec("{env_id}", ..., vectorization_mode="vector_entry_point")`',
+        "action space": f"`{env.action_space}`",
+        "observation space": f"`Box({env.observation_space.shape}, float32)`",
+        "class": f"`{module}`",
+        "trained agent": agent,
+    }
+    return "| | |\n| --- | --- |\n" + "\n".join(f"| {key} | {value} |" for key, value in rows.items())
+
+
+def _with_headings(doc: str) -> str:
+    """Return a card with a heading above each part of it."""
+    paragraphs = []
+    for paragraph in doc.split("\n\n"):
+        word = re.match(r"(Keyword arguments|[A-Z][a-z]+)[,:]", paragraph)
+        if word and word[1] in _HEADINGS:
+            paragraphs.append(f"## {_HEADINGS[word[1]]}")
+        paragraphs.append(paragraph)
+    return "\n\n".join(paragraphs)
+
+
+def observation_table(env: Any) -> str:
+    """Return what each number of an observation is."""
+    lines = ["| index | what | unit | from | to |", "| ---: | --- | --- | ---: | ---: |"]
+    lines += [f"| {i} | {o.what} | {o.unit} | {o.low:.4g} | {o.high:.4g} |" for i, o in enumerate(env.observed)]
+    return "\n".join(lines)
+
+
+def _levels(env_id: str) -> list[str]:
+    return [
+        "With levels, as `num_levels=200`:",
+        observation_table(gym.make(env_id, num_levels=200).unwrapped),
+    ]
+
+
+def _keywords(env: Any) -> str:
+    lines = ["| keyword | default |", "| --- | --- |"]
+    lines += [f"| `{name}` | `{default!r}` |" for name, default in env.defaults().items()]
+    vector = bounce_env.envs.vector_env_of(type(env))
+    own = {name: default for name, default in vector.defaults().items() if name not in env.defaults()}
+    lines += [
+        f"| `{name}` (vector environments) | `{getattr(default, 'name', default)!r}` |" for name, default in own.items()
+    ]
+    return "\n".join(lines)

@@ -33,6 +33,7 @@ pictures: $(VENV)/dev
 
 # The site, into docs/_build/html: its examples run, its pictures are drawn, and a warning is an error.
 docs: $(VENV)/docs
+	rm -rf docs/_build docs/_made
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
 
 # Wheel and sdist, tried out in a fresh environment of each Python that is there.
@@ -54,4 +55,4 @@ $(VENV)/train $(VENV)/docs $(VENV)/dev $(VENV)/dist: pyproject.toml constraints.
 	@touch $@
 
 clean:
-	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf docs/_build docs/_made docs/gallery $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

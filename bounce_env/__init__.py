@@ -30,7 +30,7 @@ if TYPE_CHECKING:
         load_scene,
     )
     from bounce_env.trained import load_agent
-    from bounce_env.trajectory import ledger_table, plot_trajectory
+    from bounce_env.trajectory import ledger_table, plot_scene, plot_trajectory
 
 _SCENE = (
     "ALL_FEATURES",
@@ -54,7 +54,7 @@ _HOME = {
     **dict.fromkeys(("PaddleEnv", "PinballEnv", "WallsEnv"), "bounce_env.envs"),
     **dict.fromkeys(("Replay", "load_replay", "replay_of"), "bounce_env.replay"),
     "load_agent": "bounce_env.trained",
-    **dict.fromkeys(("ledger_table", "plot_trajectory"), "bounce_env.trajectory"),
+    **dict.fromkeys(("ledger_table", "plot_scene", "plot_trajectory"), "bounce_env.trajectory"),
 }
 
 __all__ = [
@@ -85,6 +85,7 @@ __all__ = [
     "load_agent",
     "load_replay",
     "load_scene",
+    "plot_scene",
     "plot_trajectory",
     "register",
     "replay_of",

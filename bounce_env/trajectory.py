@@ -64,22 +64,36 @@ def ledger_table(scene: Scene, ledger: npt.NDArray[Any]) -> list[dict[str, Any]]
     ]
 
 
-def plot_trajectory(run: Recorded, axes: "Axes | None" = None, *, names: bool = True) -> "Axes":
-    """Draw the elements of a run and the paths of its balls, exactly, with the places of its events; return the axes.
+def plot_scene(scene: Scene, axes: "Axes | None" = None) -> "Axes":
+    """Draw the elements of a scene where they are at first, in metres; return the axes.
 
-    run: of `World.recorded` or `env.unwrapped.recorded()`. axes: matplotlib's, to draw on; None: a new figure with one.
-    names: whether bounces are labelled with the element's name, of the first 40 at most. Lengths are metres. Parts
-    are drawn where they begin. Paths are those of docs/physics.md, "Flight" and "Slides on curves". Raises ImportError
-    where matplotlib is missing (extra `plot`).
+    axes: matplotlib's, to draw on; None: a new figure with one. Walls and arcs are solid lines, sensors dashed, fields
+    shaded, what moves in a colour of its own (docs/scenes.md). Raises ImportError where matplotlib is missing (extra
+    `plot`).
     """
     if axes is None:
         try:
             from matplotlib import pyplot  # noqa: PLC0415
         except ModuleNotFoundError as error:
-            raise missing("plot", str(error.name), "plot_trajectory needs") from error
+            raise missing("plot", str(error.name), "plots need") from error
         _, axes = pyplot.subplots(layout="constrained")
-    for element in run.scene.elements:
+    for element in scene.elements:
         _draw_element(axes, element)
+    axes.set_aspect("equal")
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    return axes
+
+
+def plot_trajectory(run: Recorded, axes: "Axes | None" = None, *, names: bool = True) -> "Axes":
+    """Draw the elements of a run and the paths of its balls, exactly, with the places of its events; return the axes.
+
+    run: of `World.recorded` or `env.unwrapped.recorded()`. axes: matplotlib's, to draw on; None: a new figure with one.
+    names: whether bounces are labelled with the element's name, of the first 40 at most. Lengths are metres. The scene
+    is drawn as by `plot_scene`. Paths are those of docs/physics.md, "Flight" and "Slides on curves". Raises ImportError
+    where matplotlib is missing (extra `plot`).
+    """
+    axes = plot_scene(run.scene, axes)
     left, bottom, right, top = run.scene.bounds
     size = max(right - left, top - bottom, run.scene.ball.radius)
     for k, paths in enumerate(run.balls):
@@ -92,9 +106,6 @@ def plot_trajectory(run: Recorded, axes: "Axes | None" = None, *, names: bool = 
             axes.plot(place[:, 0], place[:, 1], "o", color=colour, markersize=5, markerfacecolor="white", zorder=4)
     if names:
         _label(axes, run)
-    axes.set_aspect("equal")
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
     return axes
 
 

@@ -74,7 +74,8 @@ class World:
     def reset(self, *, position: npt.ArrayLike, velocity: npt.ArrayLike) -> None:
         """Time 0, parts where they start, the balls at `position` [m] with `velocity` [m/s].
 
-        Both are of shape (balls, 2), or (x, y) for one ball, no number beyond 1e15 either way. A paddle starts in the
+        Both are of shape (balls, 2), or (x, y) for one ball, each number from -1e15 to 1e15; a velocity may exceed the
+        scene's `max_speed`, which acts at bounces. A paddle starts in the
         middle of its rail, a flipper at its `rest_angle`, a moving bumper at its `center`, a draggable wall where it is
         in the scene. A ball that overlaps an element by no more than round-off is moved to its surface. Raises
         ValueError for another shape, for NaN, infinity and what is no number, and where a ball overlaps an element
@@ -94,7 +95,7 @@ class World:
     def record(self, on: bool = True) -> None:
         """Keep all that happens from the next `reset` on, for `recorded`; with False: no longer.
 
-        Until `restore` or `replace`, too: nothing recorded leads to what comes then.
+        `restore` and `replace` end it: what comes then does not follow from what was recorded.
         Recording changes no bit of the motion. Some kilobytes are kept for each event and each call.
         """
         if not isinstance(on, bool | np.bool_):
@@ -166,7 +167,7 @@ class World:
         A paddle moves along its rail at `value` m/s. A flipper turns to its `active_angle` while `value` is True, and
         back while it is False. A moving bumper goes on at `value` m/s, and turns back at the ends of its rail as ever.
         The ends of a draggable wall move at `value` = ((vx, vy), (vx, vy)) m/s, the start's and the end's, as far as
-        its `offset_radius` and `min_length` let them.
+        its `reach` and `min_length` let them.
 
         Raises ValueError for a name that no part has, and for a value that it cannot take.
         """
@@ -221,7 +222,7 @@ class World:
         place and command. position: where balls in play are from now on, (balls, 2), metres; None: where they are.
 
         The place is the distance or angle from its first stop, as far as the new way reaches; a draggable wall keeps
-        its ends where its `start`, `end` and `offset_radius` are as before. All elements are on.
+        its ends where its `start`, `end` and `reach` are as before. All elements are on.
         Raises ValueError where the balls have another size or one overlaps an element of the new scene; the world is
         then as before.
         """
@@ -325,7 +326,7 @@ class World:
 
     @property
     def counts(self) -> Counts:
-        """How much has happened since reset."""
+        """How much has happened since reset: `events`, `bounces`, and `speed_capped`: bounces slowed by `max_speed`."""
         world = self._state.worlds[0]
         return Counts(int(world.events_before + world.events), int(world.bounces), int(world.speed_capped))
 

@@ -40,9 +40,10 @@ class PaddleEnv(BounceEnv):
     is: stack some, or ask for a `trail`.
 
     Levels: with `num_levels` each episode is played on one of so many levels, from `start_level` on, which its seed
-    chooses; 0 stands for all of the 2^31. A level is a number from which follows where its bumpers are: anywhere in the
-    upper half of the field, with gaps that the ball passes; from level 10 on that on a rail moves, at 0.1 to 0.4 m/s.
-    Train on some, such as `num_levels=200`, and measure on others: `num_levels=0, start_level=1_000_000`.
+    chooses; 0 stands for all from there on, up to the last of the 2^31. A level is a number from which follows where
+    its bumpers are: anywhere in the upper half of the field, with gaps that the ball passes; from level 10 on that on a
+    rail moves, at 0.1 to 0.4 m/s. Train on some, such as `num_levels=200`, and measure on others: `num_levels=0,
+    start_level=1_000_000`.
 
     Reward: 1 for each hit of a bumper ("score"). Nothing for survival. With `reward="dense"` besides, in every step,
     gamma Phi(s') - Phi(s), where Phi = -(distance along the rail from the paddle's middle to the ball) / (diagonal of
@@ -68,7 +69,8 @@ class PaddleEnv(BounceEnv):
     one), `grayscale` (False), `trail` (0.0; seconds of the ball's way, bounces included, that a frame shows, fading),
     `show_bounces` (False; whether `render` shows, after a step with bounces, the last of them in place of the step's
     end), `record_events` (False; whether `replay` has what happens). A vector env also takes `num_envs`,
-    `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info` ("all").
+    `max_episode_steps`, `num_threads` (1), `autoreset_mode` ("NEXT_STEP", "SAME_STEP", "DISABLED"), `copy` (True),
+    `info` ("all"; "ends", "none").
 
     Versions: v0, first release. What the engine does: docs/physics.md.
     """

@@ -70,10 +70,10 @@ class PinballEnv(BounceEnv):
     `reset`: `position` puts the first ball straight into play, `velocity` says how fast it is.
 
     End: terminated when the last ball drains; truncated after `time_limit` seconds of play (or, never seen in play,
-    when more than 10 000 events fall into one frame: `end_reason` "budget"). A ball that drains within 5 s is given
-    back, once. When one has been in the flippers' zone for 2 s, both are released until it has left it
-    (`hold_released`). One that for 10 s has neither met a flipper nor earned points is stuck, and is shot again
-    (`stuck_freed`).
+    when more than 10 000 events fall into one frame: `end_reason` "budget"). A ball that drains within 5 s after it
+    came into play is given back, each ball once. When one has been in the flippers' zone for 2 s, both are released
+    until it has left it (`hold_released`). One that for 10 s has neither met a flipper nor earned points is stuck, and
+    is shot again (`stuck_freed`).
 
     Info: each step `score` and `ball` (0 to `balls` - 1). At an episode's end also `end_reason`, `points_bumpers`,
     `points_slingshots`, `points_targets`, `points_rollovers`, `banks`, `touches` (hits of flippers), `flips`, `saves`,
@@ -87,8 +87,8 @@ class PinballEnv(BounceEnv):
     frame, pixels), `obs_width`, `obs_height` (of an observed one), `grayscale` (False), `trail` (0.0; seconds of the
     ball's way, bounces included, that a frame shows, fading), `show_bounces` (False; whether `render` shows, after a
     step with bounces, the last of them in place of the step's end), `record_events` (False; whether `replay` has what
-    happens). A vector env also takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP),
-    `copy` (True), `info` ("all").
+    happens). A vector env also takes `num_envs`, `max_episode_steps`, `num_threads` (1), `autoreset_mode` ("NEXT_STEP",
+    "SAME_STEP", "DISABLED"), `copy` (True), `info` ("all"; "ends", "none").
 
     Versions: v0, first release. What the engine does: docs/physics.md.
     """

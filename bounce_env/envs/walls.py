@@ -60,11 +60,12 @@ class WallsEnv(BounceEnv):
     Keyword arguments: `scene` (a built-in name, the path of a TOML file, a Scene, or a dict of one; "walls", whose file
     says what one must have), `reward` ("sparse"), `gamma` (0.99, of the dense reward), `balls` (5), `frame_skip` (2, in
     units of 1/60 s), `repeat_action_probability` (0.0, per 1/60 s), `time_limit` (90.0 s, None for none; the balls' 8 s
-    end an episode sooner), `obs` ("state"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of a
-    rendered frame, pixels), `obs_width`, `obs_height` (of an observed one), `grayscale` (False), `trail` (0.0, seconds
-    of the ball's way that frames show), `show_bounces` (False: a frame shows the end of a step; True: the last bounce
-    in it), `record_events` (False; whether `replay` has what happens). A vector env also takes `num_envs`,
-    `max_episode_steps`, `num_threads` (1), `autoreset_mode` (NEXT_STEP), `copy` (True), `info` ("all").
+    end an episode sooner), `obs` ("state", "pixels"), `render_mode` (None, "rgb_array", "human"), `width`, `height` (of
+    a rendered frame, pixels), `obs_width`, `obs_height` (of an observed one), `grayscale` (False), `trail` (0.0,
+    seconds of the ball's way that frames show), `show_bounces` (False: a frame shows the end of a step; True: the last
+    bounce in it), `record_events` (False; whether `replay` has what happens). A vector env also takes `num_envs`,
+    `max_episode_steps`, `num_threads` (1), `autoreset_mode` ("NEXT_STEP", "SAME_STEP", "DISABLED"), `copy` (True),
+    `info` ("all"; "ends", "none").
 
     Versions: v0, first release. What the engine does: docs/physics.md.
     """

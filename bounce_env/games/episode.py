@@ -25,8 +25,22 @@ BOOKS = record(
     speed_capped="i8",
 )  # fmt: skip
 
-# How an episode ends; END_REASONS names them in info["end_reason"].
-RUNNING, DRAINED, TIME_LIMIT, OUT_OF_BUDGET, ALL_PLAYED = 0, 1, 2, 3, 4
+RUNNING = 0
+"""An episode's `end` while it goes on."""
+
+DRAINED = 1
+"""It ended when the last ball was lost: terminated."""
+
+TIME_LIMIT = 2
+"""It ended at its time limit: truncated."""
+
+OUT_OF_BUDGET = 3
+"""It ended as more events fell into one run of the event loop than `Pace.max_events`: truncated."""
+
+ALL_PLAYED = 4
+"""It ended when the last ball was brought to its target, or lost: terminated."""
+
+# In the order of these numbers, for info["end_reason"].
 END_REASONS = (None, "drained", "time_limit", "budget", "all_played")
 
 NO_LEVEL = -1

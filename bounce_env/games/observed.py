@@ -17,7 +17,7 @@ class Observed(NamedTuple):
 
 
 def share(what: str, unit: str) -> Observed:
-    """Return a number from 0 to 1. unit: what it is a share of."""
+    """Return a number from 0 to 1. unit: what it is a share of, or what 0 and 1 stand for."""
     return Observed(what, unit, 0.0, 1.0)
 
 
@@ -31,7 +31,7 @@ def place_of(what: str, left: str, right: str, below: str, above: str) -> tuple[
 
 def velocity_of(what: str, reference: float, fastest: float) -> tuple[Observed, Observed]:
     """Return x and y of a velocity in units of `reference` [m/s], each at most `fastest` of these either way."""
-    unit = "m/s" if reference == 1.0 else f"{reference:g} m/s"
+    unit = "m/s" if reference == 1.0 else f"units of {reference:g} m/s"
     return tuple(Observed(f"{what} velocity {axis}", unit, -fastest, fastest) for axis in "xy")  # type: ignore[return-value]
 
 

@@ -267,8 +267,8 @@ class Flipper(_Surface):
 
     How it meets balls: docs/physics.md, "Parts" and "Time of impact".
 
-    pivot: (x, y) in metres, the middle of its round end. length: from there to the middle of the other end, metres,
-    > 0. radius: thickness around that line, metres, > 0. rest_angle, active_angle: of the line, radians from the x
+    pivot: (x, y) in metres, the middle of its round end. length: metres, > 0, from there to the middle of the other
+    end. radius: thickness around that line, metres, > 0. rest_angle, active_angle: of the line, radians from the x
     axis, different by at most 2 pi; it starts at rest_angle. up_speed, down_speed: at which it turns to active_angle
     and back, rad/s, > 0. b, f, kick, kick_threshold, cooldown, name: as for a `Wall`.
     """

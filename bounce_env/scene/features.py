@@ -12,26 +12,45 @@ class Feature(StrEnum):
     """What costs time, memory and compiling only where it is there; docs/architecture.md says how it is left out.
 
     Numbers cost nothing of this kind: `b`, `f`, kicks, `rest_speed` and `max_speed` are read at run time.
+
+    - BALL_RADIUS: a disc; a point has sides of walls instead
+    - GRAVITY
+    - WALLS: that stand
+    - ONE_WAY_WALLS
+    - CIRCLES: bumpers that stand, and for a disc the ends of walls and arcs
+    - ARCS
+    - CELLS: so many walls and circles that a flight does not ask them all
+    - CURVED_CONTACT: something round that can hold a ball: it slides there
+    - LINE_SENSORS
+    - CIRCLE_SENSORS
+    - FIELDS
+    - MOVING_PARTS: paddles, flippers, moving bumpers, draggable walls
+    - FLIPPERS
+    - DRAGGED_WALLS
+    - DRAG
+    - COOLDOWN
+    - SEVERAL_BALLS: discs; points do not meet
+    - SWITCHES: elements can be switched off
     """
 
-    BALL_RADIUS = "ball_radius"  # a disc; a point has sides of walls instead
+    BALL_RADIUS = "ball_radius"
     GRAVITY = "gravity"
-    WALLS = "walls"  # that stand
+    WALLS = "walls"
     ONE_WAY_WALLS = "one_way_walls"
-    CIRCLES = "circles"  # bumpers that stand, and for a disc the ends of walls and arcs
+    CIRCLES = "circles"
     ARCS = "arcs"
-    CELLS = "cells"  # so many walls and circles that a flight does not ask them all
-    CURVED_CONTACT = "curved_contact"  # something round that can hold a ball: it slides there
+    CELLS = "cells"
+    CURVED_CONTACT = "curved_contact"
     LINE_SENSORS = "line_sensors"
     CIRCLE_SENSORS = "circle_sensors"
     FIELDS = "fields"
-    MOVING_PARTS = "moving_parts"  # paddles, flippers, moving bumpers, draggable walls
+    MOVING_PARTS = "moving_parts"
     FLIPPERS = "flippers"
     DRAGGED_WALLS = "dragged_walls"
     DRAG = "drag"
     COOLDOWN = "cooldown"
-    SEVERAL_BALLS = "several_balls"  # discs; points do not meet
-    SWITCHES = "switches"  # elements can be switched off
+    SEVERAL_BALLS = "several_balls"
+    SWITCHES = "switches"
 
 
 ALL_FEATURES = frozenset(Feature) - {Feature.BALL_RADIUS}

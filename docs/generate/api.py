@@ -3,7 +3,9 @@
 import ast
 import inspect
 import re
+from enum import Enum
 from functools import cache
+from pathlib import Path
 
 from generate.public import Public, definition_of, home_of_data, parameters_of, public_names, returned
 
@@ -13,6 +15,8 @@ _CARDS = {
     for kind in ("Env", "VectorEnv")
 }
 """The pages of classes whose docstrings are shown there whole."""
+
+DOCS = Path(__file__).resolve().parent.parent
 
 _CITED = re.compile(r"docs/([\w/]+)\.md(?:, (?:section )?\"([^\"]+)\")?")
 
@@ -38,19 +42,29 @@ def source_module(path: str) -> str | None:
     return getattr(public.function, "__module__", None) if public.owner is None else public.owner.__module__
 
 
+@cache
+def title_of(page: str) -> str:
+    """Return the first heading of a page of this folder."""
+    text = (DOCS / f"{page}.md").read_text(encoding="utf-8")
+    return text.partition("\n")[0].removeprefix("# ")
+
+
 def linked(doc: str) -> str:
     """Return a docstring in which each page that it cites is a link: docs/physics.md, "Bounce law"."""
 
     def link(cited: re.Match[str]) -> str:
         anchor = "" if cited[2] is None else "#" + re.sub(r"[^\w -]", "", cited[2].lower()).replace(" ", "-")
-        return f"[{cited[0]}](/{cited[1]}.md{anchor})"
+        section = "" if cited[2] is None else f": {cited[2]}"
+        return f"[{title_of(cited[1])}{section}](/{cited[1]}.md{anchor})"
 
     return _CITED.sub(link, doc)
 
 
 def signature_of(public: Public) -> str:
     """Return the parameters as they are written, annotations and defaults included; nothing of data."""
-    if public.kind in ("data", "property", "exception"):
+    if public.kind in ("data", "property", "exception") or (
+        public.kind == "class" and issubclass(public.value, Enum)  # made by nobody
+    ):
         return ""
     if public.kind != "class":
         result = returned(public)
@@ -80,20 +94,22 @@ def _written(public: Public) -> list[str]:
         star = {p.VAR_POSITIONAL: "*", p.VAR_KEYWORD: "**"}.get(p.kind, "")
         keyword_only = keyword_only or star == "*"
         note = f": {annotations[p.name]}" if annotations.get(p.name) else ""
-        default = "" if p.default is p.empty else f" = {_default(public, p.name)}"
+        default = "" if p.default is p.empty else f" = {_default(public, p)}"
         written.append(f"{star}{p.name}{note}{default}")
     return written
 
 
-def _default(public: Public, name: str) -> str:
-    """Return a default as it is written."""
+def _default(public: Public, parameter: inspect.Parameter) -> str:
+    """Return a default as it is written; of a constant its value, if that is a number."""
+    if isinstance(parameter.default, int | float):
+        return repr(parameter.default)
     arguments = definition_of(public.function).args
     plain = [*arguments.posonlyargs, *arguments.args]
     defaults = dict(
         zip([a.arg for a in plain[len(plain) - len(arguments.defaults) :]], arguments.defaults, strict=True)
     )
     defaults |= {a.arg: d for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True) if d is not None}
-    return ast.unparse(defaults[name])
+    return ast.unparse(defaults[parameter.name])
 
 
 def _described(public: Public) -> str:
@@ -110,6 +126,6 @@ def _directive(public: Public, name: str, fence: str, inside: str) -> str:
         options.append(":classmethod:")
     doc = public.doc
     if name in _CARDS:
-        doc = doc.split("\n\n")[0] + f"\n\nIts card: [{_CARDS[name]}]({_CARDS[name]})."
+        doc = doc.split("\n\n")[0] + f"\n\nIts card: [{title_of(_CARDS[name][1:-3])}]({_CARDS[name]})."
     lines = [f"{fence}{{py:{public.kind}}} {name}{signature_of(public)}", *options, "", linked(doc), "", inside]
     return back + "\n".join([*lines, fence])

@@ -22,7 +22,7 @@ _HEADINGS = {
     "Start": "Start",
     "End": "End",
     "Info": "Info",
-    "Keyword arguments": "Keyword arguments",
+    "Keyword arguments": "",
     "Versions": "Versions",
 }
 """With what a paragraph of a card begins, and the heading that it gets."""
@@ -42,7 +42,7 @@ def card(env_id: str) -> str:
             f'What `gym.make("{env_id}").unwrapped.observed` says: of the built-in scene, with default keywords.',
             observation_table(env),
             *(_levels(env_id) if "num_levels" in env.defaults() else []),
-            "## Keyword arguments and defaults",
+            "## Keyword arguments",
             _keywords(env),
             "## Baselines",
             baselines(name),
@@ -65,13 +65,15 @@ def _facts(env: Any, env_id: str) -> str:
 
 
 def _with_headings(doc: str) -> str:
-    """Return a card with a heading above each part of it."""
+    """Return a card with a heading in place of the word that each part of it begins with."""
     paragraphs = []
     for paragraph in doc.split("\n\n"):
-        word = re.match(r"(Keyword arguments|[A-Z][a-z]+)[,:]", paragraph)
-        if word and word[1] in _HEADINGS:
-            paragraphs.append(f"## {_HEADINGS[word[1]]}")
-        paragraphs.append(paragraph)
+        word = re.match(r"(Keyword arguments|[A-Z][a-z]+)[,:] ", paragraph)
+        if word is None or word[1] not in _HEADINGS:
+            paragraphs.append(paragraph)
+        elif word[1] != "Keyword arguments":  # they are in a table of their own
+            rest = paragraph[word.end() :]
+            paragraphs += [f"## {_HEADINGS[word[1]]}", rest if rest.startswith("v0") else rest[0].upper() + rest[1:]]
     return "\n\n".join(paragraphs)
 
 
@@ -90,11 +92,23 @@ def _levels(env_id: str) -> list[str]:
 
 
 def _keywords(env: Any) -> str:
-    lines = ["| keyword | default |", "| --- | --- |"]
-    lines += [f"| `{name}` | `{default!r}` |" for name, default in env.defaults().items()]
+    told = keyword_meanings(inspect.cleandoc(type(env).__doc__))
+    told = {name: words for name, words in told.items() if words.strip('"') != str(env.defaults().get(name))}
+    lines = ["| keyword | default | what it takes |", "| --- | --- | --- |"]
+    lines += [f"| `{name}` | `{default!r}` | {told.get(name, '')} |" for name, default in env.defaults().items()]
     vector = bounce_env.envs.vector_env_of(type(env))
-    own = {name: default for name, default in vector.defaults().items() if name not in env.defaults()}
-    lines += [
-        f"| `{name}` (vector environments) | `{getattr(default, 'name', default)!r}` |" for name, default in own.items()
-    ]
+    for name, default in vector.defaults().items():
+        if name not in env.defaults():
+            shown = getattr(default, "name", default)
+            lines.append(f"| `{name}` (vector environments) | `{shown!r}` | {told.get(name, '')} |")
     return "\n".join(lines)
+
+
+def keyword_meanings(doc: str) -> dict[str, str]:
+    """Return what a card says of each keyword: "`balls` (3), `width`, `height` (of a frame, pixels)"."""
+    paragraph = " ".join(next(p for p in doc.split("\n\n") if p.startswith("Keyword arguments:")).split())
+    told = {}
+    for words, meaning in re.findall(r"((?:`\w+`, )*`\w+`) \(((?:[^()]|\([^()]*\))*)\)", paragraph):
+        for name in re.findall(r"`(\w+)`", words):
+            told[name] = meaning.replace("|", "\\|")
+    return told

@@ -7,10 +7,11 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
+from matplotlib.figure import Figure
 from PIL import Image
 
 import bounce_env
-from bounce_env import Scene, World
+from bounce_env import Scene, World, plot_scene
 from bounce_env.render import Picture, Renderer
 
 MADE = Path(__file__).resolve().parent.parent / "_made"
@@ -80,3 +81,17 @@ def element_picture(
     MADE.mkdir(exist_ok=True)
     Image.fromarray(frame).save(MADE / f"element_{name}.png")
     return f"/_made/element_{name}.png"
+
+
+def scene_picture(name: str) -> str:
+    """Draw a built-in scene with its coordinates; return the picture's address as pages write it."""
+    scene = bounce_env.load_scene(name)
+    left, bottom, right, top = scene.bounds
+    share = 4.2 / max(right - left, top - bottom)
+    figure = Figure(figsize=(0.9 + share * (right - left), 0.9 + share * (top - bottom)), layout="constrained")
+    axes = plot_scene(scene, figure.add_subplot())
+    axes.grid(linewidth=0.3)
+    axes.tick_params(labelsize=7)
+    MADE.mkdir(exist_ok=True)
+    figure.savefig(MADE / f"scene_{name}.png", dpi=110)
+    return f"/_made/scene_{name}.png"

@@ -6,12 +6,13 @@ from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bounce_env import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, load_scene
+import bounce_env
+from bounce_env import Arc, Ball, Bumper, Field, Flipper, Paddle, Scene, Sensor, Wall, builtin_scenes, load_scene
 from bounce_env.scene.fields import Allowed
-from bounce_env.scene.load import _BUILTIN
 from generate.api import linked
-from generate.pictures import element_picture
+from generate.pictures import element_picture, scene_picture
 
+BUILTIN = Path(bounce_env.__file__).parent / "scene" / "builtin"
 EXAMPLES = Path(__file__).resolve().parent.parent / "elements"
 
 
@@ -118,11 +119,11 @@ def _shown(example: Example) -> str:
 
 
 def builtins() -> str:
-    """Return the built-in scenes, each with the first line of its file, which says what it is."""
-    lines = ["| name | what it is |", "| --- | --- |"]
-    for item in sorted(_BUILTIN.iterdir(), key=lambda item: item.name):
-        if item.name.endswith(".toml"):
-            lines.append(f"| `{item.name.removesuffix('.toml')}` | {_head(item.read_text(encoding='utf-8'))} |")
+    """Return the built-in scenes, each with the first sentence of its file and a picture in metres."""
+    lines = ["| name | what it is | where what is |", "| --- | --- | --- |"]
+    for name in builtin_scenes():
+        text = (BUILTIN / f"{name}.toml").read_text(encoding="utf-8")
+        lines.append(f"| `{name}` | {_head(text)} | ![{name}]({scene_picture(name)}) |")
     return "\n".join(lines)
 
 

@@ -25,8 +25,8 @@ from bounce_env.engine.motion.instant import before, later, since
 from bounce_env.engine.motion.parts import part_moves_until, part_stop_instant
 from bounce_env.engine.tolerances import BOUNCES_AT_ONE_EVENT, ULPS_OF_SPEED
 
-# How a run of the loop ends.
 DONE, BUDGET_SPENT, PAGE_FULL, BOUNCED = 0, 1, 2, 3
+"""How a run of the loop ends: DONE, at the instant that was asked for; the others before it."""
 
 ANY_BOUNCES = 2**62
 """More than there ever are."""

@@ -198,7 +198,8 @@ class Status(IntEnum):
 
     - OK (0): in play, at the time that was asked for.
     - BUDGET (1): in play, but the call ran out of events: the next one goes on from the last event.
-    - CRUSHED (2): caught between closing parts, which stand until a command opens the gap.
+    - CRUSHED (2): caught between a closing part and what opposes it; both stand until a command moves the part away
+      (docs/physics.md, "Crushed").
     - OUT (3): out of play: it has crossed a drain.
     """
 
@@ -246,8 +247,9 @@ class EventKind(IntEnum):
         return self.name.lower().replace("_", " ")
 
 
-# As plain numbers, for kernels.
 OK, BUDGET, CRUSHED, OUT = map(int, Status)
+"""The members of `Status` as plain numbers, for kernels: OUT is that of a ball that has crossed a drain."""
+
 BOUNCE, CONTACT_BEGINS, CONTACT_ENDS, CROSSING, PART_STOPS, CRUSH, ABSORBED, CORNER_BOUNCE = map(int, EventKind)
 
 

@@ -123,25 +123,25 @@ class PinballGame(Game):
         yield from velocity_of("ball", REFERENCE_SPEED, speed)
         flippers = [part.name for m, (_, part) in enumerate(scene.parts) if layout.sides[0, m]]
         yield from (share(in_words(name), "0 down, 1 up") for name in flippers)
-        yield share("balls left, this one included", "of `balls`")
-        yield share("time for which a lost ball is still given back", f"of {SAVE_FRAMES / FPS:g} s")
+        yield share("balls left, this one included", "share of `balls`")
+        yield share("time for which a lost ball is still given back", f"share of {SAVE_FRAMES / FPS:g} s")
         held_time = "time that the ball has been at the flippers; at 1 they are released until it leaves"
-        yield share(held_time, f"of {HOLD_FRAMES / FPS:g} s")
-        yield share("multiplier", f"of {HIGHEST_MULTIPLIER}")
-        yield share("hits of bumpers and slingshots since a flipper's touch", f"of {FARMED}")
-        yield share("time without points or a touch of a flipper", f"of {STUCK_FRAMES / FPS:g} s")
+        yield share(held_time, f"share of {HOLD_FRAMES / FPS:g} s")
+        yield share("multiplier", f"share of {HIGHEST_MULTIPLIER}")
+        yield share("hits of bumpers and slingshots since a flipper's touch", f"share of {FARMED}")
+        yield share("time without points or a touch of a flipper", f"share of {STUCK_FRAMES / FPS:g} s")
         for side in ("left", "right"):
-            yield share(f"time until the {side} button acts again", f"of {REST_FRAMES / FPS:g} s")
+            yield share(f"time until the {side} button acts again", f"share of {REST_FRAMES / FPS:g} s")
         for role in (TARGET, ROLLOVER):
             lamps = [e.name for e, known in zip(scene.elements, layout.roles[0], strict=True) if known == role]
             yield from (share(in_words(name), "1: it is lit") for name in lamps)
         for i in layout.bumpers[0].tolist():
             bumper = scene.elements[i]
             assert not isinstance(bumper, Sensor | Field)
-            yield share(f"{in_words(bumper.name)}: what is left of its cooldown", f"of {bumper.cooldown:g} s")
+            yield share(f"{in_words(bumper.name)}: what is left of its cooldown", f"share of {bumper.cooldown:g} s")
         if options.nudge:
-            yield share("tilt meter", f"of {TILT:g}; 1: tilted")
-            yield share("time until the next nudge", f"of {NUDGE_FRAMES / FPS:g} s")
+            yield share("tilt meter", f"share of {TILT:g}; 1: tilted")
+            yield share("time until the next nudge", f"share of {NUDGE_FRAMES / FPS:g} s")
         if options.repeat_action_probability > 0.0:
             yield from held(
                 ("left button", "right button", "nudge left", "nudge right")[: 4 if options.nudge else 2], 0.0

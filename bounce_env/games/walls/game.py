@@ -57,8 +57,8 @@ class WallsGame(Game):
             *place_of("first end of the wall", *ends),
             *place_of("second end of the wall", *ends),
             *place_of("target", *ends),
-            share("time that the ball has left", f"of {BALL_FRAMES / FPS:g} s"),
-            share("balls left, this one included", "of `balls`"),
+            share("time that the ball has left", f"share of {BALL_FRAMES / FPS:g} s"),
+            share("balls left, this one included", "share of `balls`"),
         )
         if options.repeat_action_probability > 0.0:
             self.observed += held(

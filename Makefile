@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
-.PHONY: train test check results soak browser pictures docs dist lint clean
+.PHONY: train test check results soak browser pictures docs clients dist lint clean
 
 train: $(VENV)/train
 	$(BIN)/python -m agents.train
@@ -22,6 +22,18 @@ test: lint
 # The same tests with full counts: hours, not minutes.
 soak: $(VENV)/dev
 	BOUNCE_SOAK=1 $(BIN)/python -m pytest -rP -n 2 --dist loadfile
+
+# Trainers in environments of their own, as their pins collide: each trains, and must beat a baseline. 15 minutes.
+clients: $(VENV)/dev $(VENV)/clients/done $(VENV)/rllib/done
+	BOUNCE_CLIENTS=$(abspath $(VENV)) $(BIN)/python -m pytest -rP tests/clients
+
+$(VENV)/clients/done: docs/clients/requirements.txt
+$(VENV)/rllib/done: docs/clients/requirements-rllib.txt
+$(VENV)/clients/done $(VENV)/rllib/done: pyproject.toml
+	$(PYTHON) -m venv $(@D)
+	@echo "Installing $(firstword $(filter docs/%,$^)) into $(@D): some minutes the first time ..."
+	$(@D)/$(notdir $(BIN))/python -m pip install --quiet --disable-pip-version-check -r $(filter docs/%,$^) --editable .
+	@touch $@
 
 # The pages in a real browser, which make test does as well: Chromium or Chrome must be on the path.
 browser: $(VENV)/dev

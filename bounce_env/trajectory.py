@@ -88,11 +88,15 @@ def plot_scene(scene: Scene, axes: "Axes | None" = None) -> "Axes":
 def plot_trajectory(run: Recorded, axes: "Axes | None" = None, *, names: bool = True) -> "Axes":
     """Draw the elements of a run and the paths of its balls, exactly, with the places of its events; return the axes.
 
+    A ring marks where a ball begins, a disc where it is at last.
+
     run: of `World.recorded` or `env.unwrapped.recorded()`. axes: matplotlib's, to draw on; None: a new figure with one.
     names: whether bounces are labelled with the element's name, of the first 40 at most. Lengths are metres. The scene
-    is drawn as by `plot_scene`. Paths are those of docs/physics.md, "Flight" and "Slides on curves". Raises ImportError
-    where matplotlib is missing (extra `plot`).
+    is drawn as by `plot_scene`. Paths are those of docs/physics.md, "Flight" and "Slides on curves". Raises TypeError
+    for what is no run, ImportError where matplotlib is missing (extra `plot`).
     """
+    if not isinstance(run, Recorded):
+        raise TypeError(f"run = {shown(run)}: must be what World.recorded() returns, after World.record() and reset")
     axes = plot_scene(run.scene, axes)
     left, bottom, right, top = run.scene.bounds
     size = max(right - left, top - bottom, run.scene.ball.radius)
@@ -102,8 +106,8 @@ def plot_trajectory(run: Recorded, axes: "Axes | None" = None, *, names: bool = 
         axes.plot(points[:, 0], points[:, 1], color=colour, linewidth=1.2, zorder=3)
         mine = run.ledger[run.ledger["ball"] == k]
         axes.plot(mine["x"], mine["y"], ".", color=colour, markersize=4, zorder=4)
-        for place in (points[:1], points[-1:]):
-            axes.plot(place[:, 0], place[:, 1], "o", color=colour, markersize=5, markerfacecolor="white", zorder=4)
+        for place, inside in ((points[:1], "white"), (points[-1:], colour)):
+            axes.plot(place[:, 0], place[:, 1], "o", color=colour, markersize=6, markerfacecolor=inside, zorder=4)
     if names:
         _label(axes, run)
     return axes
@@ -123,17 +127,18 @@ def _points(paths: Sequence[BallPath], end: float, size: float) -> Iterator[tupl
 
 
 def _label(axes: "Axes", run: Recorded) -> None:
-    """Write the elements of bounces beside them, each name once at a place."""
-    told: set[tuple[str, float, float]] = set()
+    """Write the elements of bounces beside them, a name no second time so near that the two would touch."""
+    left, bottom, right, top = run.scene.bounds
+    apart = 0.06 * max(right - left, top - bottom)
+    told: list[tuple[str, float, float]] = []
     for row in run.ledger:
         if row["ball"] < 0 or len(told) >= _MOST_NAMES:
             continue
         name = element_name(run.scene, int(row["element"]))
         x, y, nx, ny = (float(row[column]) for column in ("x", "y", "nx", "ny"))
-        place = (name, round(x, 2), round(y, 2))
-        if place in told:
+        if any(name == other and math.hypot(x - u, y - v) < apart for other, u, v in told):
             continue
-        told.add(place)
+        told.append((name, x, y))
         at = (7.0 * nx, 7.0 * ny)  # beside the surface, on the ball's side of it
         sides = ("left" if nx > 0.3 else "right" if nx < -0.3 else "center", "bottom" if ny > 0.3 else "top")
         axes.annotate(

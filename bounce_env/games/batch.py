@@ -32,14 +32,19 @@ from bounce_env.games.episode import (
     new_results,
 )
 from bounce_env.games.game import Game
+from bounce_env.games.guarded import check_written, guarded
 from bounce_env.games.kernels import reset_worlds, step_worlds
 from bounce_env.games.recorder import MOMENTS, ROWS, Origin, Recorder, Step
+from bounce_env.games.rules import check_defined
 from bounce_env.games.state_copy import States, check_states_fit
 from bounce_env.games.timing import NO_STEP_LIMIT
 from bounce_env.scene import Scene, Sensor
 from bounce_env.wording import shown
 
 Mask = npt.NDArray[np.bool_]
+
+_FIRST_CALLS = 20
+"""After so many resets, and steps with ends, a game is not looked at any more: where it writes is in its code."""
 
 _END_REASONS = np.array(END_REASONS, dtype=object)
 
@@ -56,13 +61,15 @@ class Batch:
         self.worlds = worlds
         self.autoreset = autoreset
         self.rules = game.rules_for(worlds)
+        check_defined(type(self.rules))
         self.state: State = pack(game.scenes, worlds, own_rows=game.owns_scenes)
         self._written = game.written(self.state, self.rules)
         self.episodes: Array = np.zeros(worlds, EPISODE)
         self.results: Results = new_results(worlds, len(game.observed), len(game.counters))
         self.memory: Array | None = None if game.memory is None else np.zeros(worlds, game.memory)
         self.held = np.zeros((worlds, game.actions.width))
-        self.counters = np.zeros((worlds, len(game.counters)))
+        self.counters = guarded(worlds, len(game.counters), np.float64)
+        self._unchecked = _FIRST_CALLS
         self._start = np.full((worlds, 5), np.nan)
         self._borders = np.linspace(0, worlds, min(num_threads, worlds) + 1).astype(int).tolist()
         self._threads: ThreadPoolExecutor | None = None
@@ -99,6 +106,7 @@ class Batch:
         if recorder is not None and mask[recorder.world]:
             recorder.begin(self.state)
         reset_worlds(self._bound(), mask)
+        self._check_what_is_new()
         self._start[:] = np.nan
         self._take_recording(stepped=False)
 
@@ -169,8 +177,15 @@ class Batch:
             world, j = np.argwhere(~np.isfinite(controls))[0].tolist()
             place = f"{world}, {j}" if controls.shape[1] > 1 else f"{world}"
             raise ValueError(f"actions[{place}] = {controls[world, j]}: must be finite")
+        if ended:
+            self._check_what_is_new()
         self._take_recording(stepped=True)
         return ended
+
+    def _check_what_is_new(self) -> None:
+        if self._unchecked:
+            self._unchecked -= 1
+            check_written(self.game, self.results.observations, self.counters)
 
     def _pool(self) -> ThreadPoolExecutor:
         """The threads beside the one that calls: a forked child has a copy of the pool, but none of its threads."""

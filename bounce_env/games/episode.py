@@ -7,6 +7,7 @@ import numpy as np
 from bounce_env.engine.compile.jit import Record, function
 from bounce_env.engine.memory.records import Array, record
 from bounce_env.engine.memory.state import State
+from bounce_env.games.guarded import guarded
 from bounce_env.games.streams import EPISODES, STICKY_ACTIONS, bits, uniform
 
 EPISODE = record(
@@ -92,7 +93,7 @@ class Handle(NamedTuple):
 def new_results(worlds: int, size: int, counters: int) -> Results:
     """Zeroed results for observations of `size` numbers and so many counters."""
     return Results(
-        observations=np.zeros((worlds, size), np.float32),
+        observations=guarded(worlds, size, np.float32),
         rewards=np.zeros(worlds),
         terminated=np.zeros(worlds, np.bool_),
         truncated=np.zeros(worlds, np.bool_),

@@ -58,6 +58,14 @@ def define_game(
     follow_sources(rules, {Path(given.__code__.co_filename) for given in _games[rules].values()})
 
 
+def check_defined(rules: type) -> None:
+    """Raise TypeError for a type of rules that is no game's."""
+    if rules not in _games:
+        raise TypeError(
+            f"rules = {shown(rules)}: must be a game's: define_game({rules.__name__}, begin=..., ...) is missing"
+        )
+
+
 def _tell_apart(rules: type) -> None:
     """Give a type of rules a name that no other has.
 

@@ -4,7 +4,9 @@ import os
 import pickle
 import subprocess
 import sys
+from collections import deque
 from pathlib import Path
+from typing import NamedTuple
 
 import gymnasium as gym
 import numpy as np
@@ -15,7 +17,9 @@ import bounce_env
 from bounce_env.engine.compile import cache
 from bounce_env.envs import BounceEnv
 from bounce_env.games import define_game
-from tests.env.own_game import OwnEnv, Rules, begin, observe, play
+from bounce_env.games.batch import Batch
+from bounce_env.games.episode import SAME_STEP
+from tests.env.own_game import OwnEnv, OwnGame, OwnOptions, Rules, begin, observe, play
 
 pytestmark = pytest.mark.slow
 
@@ -109,6 +113,50 @@ def test_rules_that_are_none_or_another_games():
         define_game(int, **functions)
     with pytest.raises(ValueError, match="must be a type of their own"):
         define_game(Rules, **functions)
+
+
+class Unseen(OwnGame):
+    """Says of one number less what it is than `observe` writes."""
+
+    def __init__(self, options):
+        super().__init__(options)
+        self.observed = self.observed[:-1]
+
+
+class Uncounted(OwnGame):
+    """Names none of what `play` counts."""
+
+    counters = ()
+
+
+@pytest.mark.parametrize("worlds", [1, 3])
+def test_what_a_game_writes_too_far_is_told(worlds):
+    every = np.ones(worlds, np.bool_)
+    with pytest.raises(IndexError, match="Unseen: observe writes beyond the 4 numbers of `observed`"):
+        Batch(Unseen(OwnOptions()), worlds, autoreset=SAME_STEP).reset(every)
+    batch = Batch(Uncounted(OwnOptions()), worlds, autoreset=SAME_STEP)
+    for w in range(worlds):
+        batch.seed(w, np.uint64(w))
+    batch.reset(every)
+    with pytest.raises(IndexError, match="Uncounted: play writes beyond the 0 names of `counters`"):
+        deque((batch.step(np.full((worlds, 1), np.sin(k))) for k in range(3000)), maxlen=0)
+    right = Batch(OwnGame(OwnOptions()), worlds, autoreset=SAME_STEP)
+    right.reset(every)
+    for _ in range(300):
+        right.step(np.zeros((worlds, 1)))
+
+
+def test_rules_that_were_not_defined_are_told():
+    class Others(NamedTuple):
+        pace: object
+
+    class Undefined(OwnGame):
+        def __init__(self, options):
+            super().__init__(options)
+            self.rules = Others(self.rules.pace)
+
+    with pytest.raises(TypeError, match=r"define_game\(Others, begin="):
+        Batch(Undefined(OwnOptions()), 1, autoreset=SAME_STEP)
 
 
 def test_what_a_kernel_depends_on(tmp_path):

@@ -137,6 +137,11 @@ def test_an_episode_of_an_environment():
         gym.make("Bounce/Pinball-v0").unwrapped.recorded()
 
 
+def test_what_is_no_run_is_refused_with_the_way_to_one():
+    with pytest.raises(TypeError, match=r"World\.record\(\)"):
+        plot_trajectory(World(TWO_WALLS))
+
+
 def test_without_matplotlib_the_extra_is_named(monkeypatch):
     _, run = recorded(TWO_WALLS, (0.0, 1.0), (0.0, 0.0), 0.5)
     monkeypatch.setitem(sys.modules, "matplotlib", None)

@@ -86,7 +86,7 @@ def test_the_rl_zoo_trains_enjoys_and_tunes(tmp_path):
     assert episodes > 20
     assert mean - 2.0 * spread / np.sqrt(episodes) > 23.6
     few = ("--n-trials", 2, "--n-startup-trials", 0, "--n-evaluations", 1, "--n-eval-envs", 1, "--pruner", "none")
-    tune = ("--optimize", *few, "--sampler", "random", "-n", 4000, "-f", "tuned")
+    tune = ("--optimize", *few, "--sampler", "random", "-n", 4000, "-f", "tuned", "--hyperparams", "n_envs:8")
     run("clients", "-m", "rl_zoo3.train", *zoo, *config, *tune, cwd=tmp_path, timeout=900)
     assert len(list((tmp_path / "tuned").rglob("report_*.csv"))) == 1
 

@@ -3,6 +3,7 @@
 import ast
 import inspect
 import re
+from collections.abc import Sequence
 from enum import Enum
 from functools import cache
 from pathlib import Path
@@ -58,6 +59,25 @@ def linked(doc: str) -> str:
         return f"[{title_of(cited[1])}{section}](/{cited[1]}.md{anchor})"
 
     return _CITED.sub(link, doc)
+
+
+def names_of(public: Public) -> list[str]:
+    """Return the names of what a callable takes."""
+    if public.kind == "class" and not issubclass(public.value, Enum):
+        try:
+            return list(inspect.signature(public.value).parameters)
+        except ValueError:
+            return []
+    return [name for name, _ in parameters_of(public)] if public.kind in ("function", "method") else []
+
+
+def with_marked_names(doc: str, names: Sequence[str]) -> str:
+    """Return a docstring in which each parameter that it explains stands out: "start, end: its ends"."""
+    if not names:
+        return doc
+    some = "|".join(names)
+    explained = re.compile(rf"(?<![\w`(])((?:{some})(?:, (?:{some}))*): ")
+    return explained.sub(lambda found: ", ".join(f"`{name}`" for name in found[1].split(", ")) + ": ", doc)
 
 
 def signature_of(public: Public) -> str:
@@ -127,5 +147,6 @@ def _directive(public: Public, name: str, fence: str, inside: str) -> str:
     doc = public.doc
     if name in _CARDS:
         doc = doc.split("\n\n")[0] + f"\n\nIts card: [{title_of(_CARDS[name][1:-3])}]({_CARDS[name]})."
+    doc = with_marked_names(doc, names_of(public))
     lines = [f"{fence}{{py:{public.kind}}} {name}{signature_of(public)}", *options, "", linked(doc), "", inside]
     return back + "\n".join([*lines, fence])

@@ -1,4 +1,4 @@
-"""The public names of the package, what their docstrings leave out, and the text of the API pages."""
+"""The public names of the package, with their docstrings and signatures as they are written."""
 
 import ast
 import inspect
@@ -19,9 +19,6 @@ MODULES = (
     "bounce_env.sb3",
 )
 """Where public names are: all of `__all__`, and of `bounce_env.sb3`, which has none, its one class."""
-
-_INHERITED = {"reset", "step", "render", "close"}
-"""Methods that an environment has of Gymnasium; shown of the base class alone."""
 
 
 class Public(NamedTuple):
@@ -92,10 +89,9 @@ def public_names() -> Iterator[Public]:
 def members_of(public: Public) -> Iterator[Public]:
     """Return the public methods and properties of a class that it, or a base of ours, defines."""
     cls = public.value
-    if issubclass(cls, Enum) or (public.module == "bounce_env.envs" and cls.__name__ not in _BASES):
+    is_game = cls.__name__.endswith("Env") and cls.__name__ not in _BASES
+    if issubclass(cls, Enum) or is_game:  # of a game they are in its base
         return
-    if cls.__name__ in ("PaddleEnv", "PinballEnv", "WallsEnv"):
-        return  # what they have is in `BounceEnv`
     shown: set[str] = set()
     for base in cls.__mro__:
         if not base.__module__.startswith("bounce_env"):
@@ -108,7 +104,7 @@ def members_of(public: Public) -> Iterator[Public]:
                 yield Public(public.module, f"{public.path}.{name}", value, cls)
 
 
-_BASES = ("BounceEnv", "BounceVectorEnv")
+_BASES = ("BounceEnv", "BounceVectorEnv", "BounceVecEnv")
 
 
 def doc_of_data(public: Public) -> str:
@@ -154,45 +150,6 @@ def _homes(public: Public) -> Iterator[str]:
     yield from (f"{public.module}.features", f"{public.module}.base", f"{public.module}.elements")
 
 
-# What a docstring has to say.
-
-_SOURCE = re.compile(r"docs/[\w/]+\.md|[Tt]utorial|tests/[\w/]+\.py|Gymnasium|Stable-Baselines3|SB3")
-_SHAPE = re.compile(r"\(\w[\w ]*, ?[\w ]*\)|\(\w+,\)|shape|one for each|one row")
-_UNIT = re.compile(r"\bm/s|\bmetres|\bseconds|\[m\]|\[s\]|\brad|\[|0 to 1|-1 to 1|share|number|float")
-_ERRORS = re.compile(r"\b[Rr]aises?\b|Error")
-
-
-def lacks(public: Public, docs: dict[str, str]) -> list[str]:
-    """Return what is missing in the docstring of a public name: parameters, errors, shapes, units, its source.
-
-    docs: the docstring of each class by its path, which may say it for its members.
-    """
-    doc = public.doc
-    if len(doc.split()) < 3:
-        return ["docstring"]
-    told = doc + " " + docs.get(public.path.partition(".")[0], "")
-    problems = []
-    if public.kind in ("function", "method"):
-        parameters = [(name, annotation) for name, annotation in parameters_of(public) if name not in explained(public)]
-        problems += [f"parameter {name}" for name, _ in parameters if not re.search(rf"\b{name}\b", told)]
-        if parameters and not public.is_compiled and not _ERRORS.search(told):
-            problems.append("errors")
-        annotations = " ".join(annotation for _, annotation in parameters) + " " + returned(public)
-        if re.search(r"NDArray|ArrayLike|Floats|Array\b", annotations) and not _SHAPE.search(told):
-            problems.append("shape")
-        if re.search(r"NDArray|ArrayLike|Floats|Array\b|\bfloat\b", annotations) and not _UNIT.search(told):
-            problems.append("unit")
-    is_of_a_page = public.kind == "data" or public.is_compiled  # all together: the page of games names their source
-    if public.owner is None and not is_of_a_page and not _SOURCE.search(doc):
-        problems.append("source")
-    return problems
-
-
-def explained(public: Public) -> set[str]:
-    """Return the parameters that the page of games explains once, for all functions that kernels call."""
-    return {"state", "game", "w", "k", "m", "episode", "action"} if public.is_compiled else set()
-
-
 def parameters_of(public: Public) -> list[tuple[str, str]]:
     """Return the parameters of a function or method, but for self and cls: name, and annotation as it is written."""
     arguments = definition_of(public.function).args
@@ -215,12 +172,3 @@ def definition_of(function: Any) -> ast.FunctionDef:
     node = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
     assert isinstance(node, ast.FunctionDef), function
     return node
-
-
-def missing_in_docstrings() -> list[str]:
-    """Return each public name of which a docstring says too little, with what it leaves out."""
-    names = list(public_names())
-    docs = {public.path: public.doc for public in names if public.owner is None}
-    return [
-        f"{public.module}.{public.path}: {', '.join(problems)}" for public in names if (problems := lacks(public, docs))
-    ]

@@ -24,7 +24,7 @@ from tests.conftest import require
 from tests.docs.pages import DOCS
 
 sys.path.insert(0, str(DOCS))
-from generate import public, scene_reference
+from generate import docstrings, public, scene_reference
 
 LOADS = {
     **dict.fromkeys(("script", "img", "iframe", "video", "audio", "source", "embed"), "src"),
@@ -159,8 +159,8 @@ def test_every_public_name_is_on_the_api_pages(site):
 
 
 def test_every_docstring_of_a_public_name_says_what_it_must():
-    """Parameters, errors, shapes, units and the source: docs/generate/public.py says how each is looked for."""
-    assert public.missing_in_docstrings() == []
+    """Parameters, errors, shapes, units and the source: docs/generate/docstrings.py says how each is looked for."""
+    assert docstrings.missing_in_docstrings() == []
 
 
 def documented(doc):
@@ -186,7 +186,7 @@ def documented(doc):
     ],
 )
 def test_what_a_docstring_leaves_out_is_noticed(doc, missing):
-    assert public.lacks(documented(doc), {}) == missing
+    assert docstrings.lacks(documented(doc), {}) == missing
 
 
 @pytest.mark.parametrize("env_id", [entry.id for entry in ENTRIES])

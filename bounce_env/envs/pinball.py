@@ -65,9 +65,10 @@ class PinballEnv(BounceEnv):
 
     Reward: points / 1000, and -2 for every ball that is lost ("dense"). With `reward="score"` points / 1000 alone.
 
-    Start: the ball in the lane, shot at 1.45 to 2.4 m/s as the episode's seed says for each one. A step in which a ball
-    is in the lane lasts until it is in play, and `frame_skip` frames more where it was there from the start. Options of
-    `reset`: `position` puts the first ball straight into play, `velocity` says how fast it is.
+    Start: the ball in the lane, shot at 1.45 to 2.4 m/s as the episode's seed says for each one. Frames in which a ball
+    is on its way out of the lane do not count as a step's: a step lasts `frame_skip` frames of play, and until no ball
+    is in the lane. Options of `reset`: `position` puts the first ball straight into play, `velocity` says how fast it
+    is.
 
     End: terminated when the last ball drains; truncated after `time_limit` seconds of play (or, never seen in play,
     when more than 10 000 events fall into one frame: `end_reason` "budget"). A ball that drains within 5 s after it

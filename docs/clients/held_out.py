@@ -12,9 +12,7 @@ BASELINES = {"Bounce/Paddle-v0": {"random": 2.0, "follow": 7.4, "predictor": 23.
 """Mean scores of players that learn nothing, of `python -m agents.evaluate`."""
 
 
-def held_out_score(
-    act: Callable[[Any], Any], env_id: str = "Bounce/Paddle-v0", episodes: int = 200
-) -> tuple[float, float]:
+def held_out_score(act: Callable[[Any], Any], env_id: str = "Bounce/Paddle-v0") -> tuple[float, float]:
     """Return the mean score of a player in 200 episodes, and the half-width of its 95 % interval.
 
     act: from observations (episodes, size), float32, to actions.

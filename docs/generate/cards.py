@@ -7,7 +7,9 @@ from typing import Any
 import gymnasium as gym
 
 import bounce_env
+from bounce_env.envs.observations import ViewOptions
 from bounce_env.registration import short_name
+from bounce_env.scene.fields import Allowed
 from generate.api import linked
 from generate.baselines import baselines
 from generate.pictures import film
@@ -91,17 +93,45 @@ def _levels(env_id: str) -> list[str]:
     ]
 
 
+_OF_VECTORS = {
+    "num_envs": "a whole number >= 1",
+    "max_episode_steps": "None, or a whole number >= 1",
+    "num_threads": "a whole number >= 1",
+    "autoreset_mode": '"NEXT_STEP", "SAME_STEP" or "DISABLED"',
+    "copy": "True or False; whether a step's observations are arrays of their own",
+    "info": '"all", "ends" or "none"',
+}
+"""What the keywords take that vector environments have beside those of single ones."""
+
+
 def _keywords(env: Any) -> str:
-    told = keyword_meanings(inspect.cleandoc(type(env).__doc__))
-    told = {name: words for name, words in told.items() if words.strip('"') != str(env.defaults().get(name))}
+    told = keyword_meanings(inspect.cleandoc(type(env).__doc__)) | {"scene": ""}
+    allowed = allowed_words(type(env).game_type.options_type) | allowed_words(ViewOptions)
+    vector = bounce_env.envs.vector_env_of(type(env)).defaults()
     lines = ["| keyword | default | what it takes |", "| --- | --- | --- |"]
-    lines += [f"| `{name}` | `{default!r}` | {told.get(name, '')} |" for name, default in env.defaults().items()]
-    vector = bounce_env.envs.vector_env_of(type(env))
-    for name, default in vector.defaults().items():
-        if name not in env.defaults():
-            shown = getattr(default, "name", default)
-            lines.append(f"| `{name}` (vector environments) | `{shown!r}` | {told.get(name, '')} |")
+    for name, default in env.defaults().items():
+        words = "; ".join(filter(None, (allowed.get(name), _beside(told.get(name, ""), default))))
+        lines.append(f"| `{name}` | `{default!r}` | {words} |")
+    for name, words in _OF_VECTORS.items():
+        shown = getattr(vector[name], "name", vector[name])
+        lines.append(f"| `{name}` (vector environments) | `{shown!r}` | {words} |")
     return "\n".join(lines)
+
+
+def _beside(words: str, default: Any) -> str:
+    """Return what a card says of a keyword beside its default, which stands first: "120.0 s, None for none"."""
+    for shown in (f'"{default}"', str(default)):
+        if words == shown:
+            return ""
+        words = words.removeprefix(f"{shown}, ").removeprefix(f"{shown}; ")
+    return "" if words[:1].isdigit() or words == '"pixels"' else words  # what the checks say in other words
+
+
+def allowed_words(options: Any) -> dict[str, str]:
+    """Return what the checks of a class of options say that each field takes."""
+    fields = options.__pydantic_fields__
+    words = {n: next((m.words for m in f.metadata if isinstance(m, Allowed)), "") for n, f in fields.items()}
+    return {name: text.replace("|", "\\|") for name, text in words.items()}
 
 
 def keyword_meanings(doc: str) -> dict[str, str]:

@@ -16,6 +16,7 @@ import gymnasium as gym
 import pytest
 from playwright.sync_api import sync_playwright
 
+from bounce_env.envs import vector_env_of
 from bounce_env.lab.benchmark import browser_path
 from bounce_env.registration import ENTRIES
 from bounce_env.report.stability.mechanisms import MECHANISMS, tried_cases
@@ -201,7 +202,7 @@ def test_pages_of_environments_have_every_number_of_an_observation(site, env_id)
         assert int(index) == number
         assert what.replace("’", "'") == told.what
     assert f"{name}-v0.gif" in text
-    for keyword in env.defaults():
+    for keyword in vector_env_of(type(env)).defaults() | env.defaults():
         assert f">{keyword}<" in text
 
 

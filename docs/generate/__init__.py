@@ -11,6 +11,7 @@ from generate.api import api, source_module
 from generate.baselines import baselines
 from generate.cards import card
 from generate.mechanisms import mechanisms
+from generate.replays import replay
 from generate.scene_reference import builtins, elements
 
 _ROOT = Path(__file__).resolve().parent.parent.parent
@@ -28,7 +29,7 @@ def beside(name: str) -> str:
     return text
 
 
-_MAKERS = {maker.__name__: maker for maker in (api, baselines, beside, builtins, card, elements, mechanisms)}
+_MAKERS = {maker.__name__: maker for maker in (api, baselines, beside, builtins, card, elements, mechanisms, replay)}
 
 
 def filled(text: str) -> str:

@@ -34,6 +34,17 @@ LOADS = {
 }
 """The attributes for which a browser fetches something."""
 
+REPLAYS = ("replay", "gallery/plot_04_video_and_replay")
+"""Pages on which a replay shows itself."""
+
+INKED = """canvas => {
+    const {data} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    let inked = 0;
+    for (let i = 0; i < data.length; i += 4) inked += data[i] + data[i + 1] + data[i + 2] > 240;
+    return inked;
+}"""
+"""How many pixels of a canvas are bright."""
+
 NAVIGATES = {"next", "prev", "index", "search", "up", "canonical"}
 """Kinds of <link> for which it does not."""
 
@@ -114,10 +125,12 @@ def test_a_browser_asks_for_nothing_but_files_of_the_site(site):
         page.on("request", lambda request: asked.append(request.url))
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("requestfailed", lambda request: complaints.append(f"{request.url}: {request.failure}"))
-        for name in ("index", "physics", "tutorial", "scenes", "environments/pinball", "api/engine",
-                     "gallery/plot_04_video_and_replay"):  # fmt: skip
+        for name in ("index", "physics", "tutorial", "scenes", "environments/pinball", "api/engine", *REPLAYS):
             page.goto((site / f"{name}.html").as_uri())
             page.wait_for_load_state("networkidle")
+            if name in REPLAYS:
+                drawn = page.frame_locator("iframe").locator("canvas").first
+                assert drawn.evaluate(INKED) > 1000, name
         page.goto((site / "tutorial.html").as_uri())
         page.wait_for_selector("mjx-container svg")  # formulas are drawn, by what is shipped
         formulas = page.locator("mjx-container").count()

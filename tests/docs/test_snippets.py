@@ -1,5 +1,6 @@
 """Every snippet of README and site is run, from the page itself; every line for a shell can be typed as it stands."""
 
+import os
 import re
 import runpy
 import shlex
@@ -94,6 +95,30 @@ def check_command(line, monkeypatch):
             assert env in yaml.safe_load((ROOT / file).read_text()), line
         case _:
             assert program in ("git", "pre-commit", "twine", "python"), line
+
+
+ENDING = re.compile(
+    r"^(bounce-env (scenes list|scenes draw my|doctor|watch pinball --film)|.*agents.evaluate random --env-id)"
+)
+"""Commands that end by themselves within a minute; the others open a window, serve pages, or take long."""
+
+
+def test_commands_that_end_are_run(tmp_path):
+    scene = next(s.code for s in snippets(ROOT / "docs" / "scenes.md") if s.language == "toml")
+    (tmp_path / "my.toml").write_text(scene)
+    lines = {line for page in PAGES for line in commands(page) if ENDING.match(line)}
+    assert len(lines) >= 5
+    environment = {**os.environ, "SDL_VIDEODRIVER": "dummy", "PYTHONPATH": str(ROOT)}
+    for line in sorted(lines):
+        words = shlex.split(line, comments=True)
+        own = words[0] == "bounce-env"
+        command = [sys.executable, "-m", "bounce_env", *words[1:]] if own else [sys.executable, *words[1:]]
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=600, check=False
+        )
+        assert done.returncode == 0, f"{line}\n{done.stdout[-1500:]}{done.stderr[-1500:]}"
+    assert (tmp_path / "my.png").stat().st_size > 1000
+    assert (tmp_path / "game.mp4").stat().st_size > 10_000
 
 
 def check_own(words):

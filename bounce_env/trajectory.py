@@ -48,8 +48,7 @@ def ledger_table(scene: Scene, ledger: npt.NDArray[Any]) -> list[dict[str, Any]]
 
     scene: in which it was written. ledger: of `World.advance` (docs/physics.md, "Ledger"), shape (rows,). The keys are
     its columns, in its units: metres, seconds, m/s; `kind` is the kind in words, "bounce", and `element` the name of
-    the element, or its kind and index. Raises ValueError for what is no ledger, or one of a scene with fewer balls or
-    elements.
+    the element, or its kind and index. Raises ValueError for what is no ledger.
     """
     columns = getattr(getattr(ledger, "dtype", None), "names", None)
     if columns is None or columns != LEDGER.names:

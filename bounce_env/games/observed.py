@@ -32,7 +32,8 @@ def place_of(what: str, left: str, right: str, below: str, above: str) -> tuple[
 def velocity_of(what: str, reference: float, fastest: float) -> tuple[Observed, Observed]:
     """Return x and y of a velocity in units of `reference` [m/s], each at most `fastest` of these either way."""
     unit = "m/s" if reference == 1.0 else f"units of {reference:g} m/s"
-    return tuple(Observed(f"{what} velocity {axis}", unit, -fastest, fastest) for axis in "xy")  # type: ignore[return-value]
+    x, y = (Observed(f"{what} velocity {axis}", unit, -fastest, fastest) for axis in "xy")
+    return x, y
 
 
 def held(words: Sequence[str], low: float) -> tuple[Observed, ...]:

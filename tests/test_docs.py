@@ -131,8 +131,21 @@ def test_files_that_are_linked_or_named_are_there(document):
         r"`((?:tests|docs|configs|bounce_env|\.github)/[\w./-]+\.\w+)`", text
     )
     assert document != "README.md" or len(named) > 3
-    for path in named:
+    for path in map(source_of, named):
         assert "NAME" in path or (ROOT / path).exists() or ((ROOT / document).parent / path).exists(), path
+
+
+def source_of(path: str) -> str:
+    """Return what a page of the gallery is made of; any other path as it is."""
+    made = re.fullmatch(r"gallery/(\w+)\.rst", path)
+    if made is None:
+        return path
+    return "examples/README.rst" if made[1] == "index" else f"examples/{made[1]}.py"
+
+
+def test_a_link_to_an_example_that_is_not_there_is_noticed():
+    assert (ROOT / "docs" / source_of("gallery/plot_10_trajectory.rst")).exists()
+    assert not (ROOT / "docs" / source_of("gallery/plot_99_nothing.rst")).exists()
 
 
 @pytest.mark.parametrize("workflow", sorted((ROOT / ".github" / "workflows").glob("*.yml")), ids=lambda path: path.name)

@@ -81,6 +81,13 @@ def pids(algorithm: Any) -> list[int]:
     return algorithm.env_runner_group.foreach_env_runner(lambda runner: os.getpid(), local_env_runner=False)
 
 
+def node_of_a_runner(algorithm: Any) -> Any:
+    """Return a node, but not the head, on which a runner is."""
+    group = algorithm.env_runner_group
+    ids = group.foreach_env_runner(lambda runner: ray.get_runtime_context().get_node_id(), local_env_runner=False)
+    return next(node for node in nodes if node.node_id in ids)
+
+
 def act_of(algorithm: Any) -> Any:
     """Return the player of the present weights: the middle of its distribution."""
     module = algorithm.get_module()
@@ -100,7 +107,7 @@ for update in range(UPDATES):
         os.kill(pids(algorithm)[0], signal.SIGKILL)
         print(f"update {update}: a runner was killed")
     if update == 19:
-        cluster.remove_node(nodes[0])
+        cluster.remove_node(node_of_a_runner(algorithm))
         print(f"update {update}: a node was killed")
 group = algorithm.env_runner_group
 steps, restarts = int(result["num_env_steps_sampled_lifetime"]), group.num_remote_worker_restarts()

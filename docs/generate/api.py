@@ -4,9 +4,11 @@ import ast
 import inspect
 import re
 from collections.abc import Sequence
+from copy import deepcopy
 from enum import Enum
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from generate.public import Public, definition_of, home_of_data, parameters_of, public_names, returned
 
@@ -88,11 +90,9 @@ def signature_of(public: Public) -> str:
         return ""
     if public.kind != "class":
         result = returned(public)
-        arguments = ", ".join(_written(public))
-        return f"({arguments})" + (f" -> {result}" if result else "")
+        return f"({_arguments(public.function)})" + (f" -> {result}" if result else "")
     if "__init__" in vars(public.value) and not hasattr(public.value, "__dataclass_fields__"):
-        constructor = Public(public.module, "__init__", public.value.__init__, public.value)
-        return f"({', '.join(_written(constructor))})"
+        return f"({_arguments(public.value.__init__)})"
     try:
         parameters = inspect.signature(public.value).parameters.values()
     except ValueError:
@@ -100,36 +100,24 @@ def signature_of(public: Public) -> str:
     return f"({', '.join(str(p.replace(annotation=p.empty)) for p in parameters if p.name not in ('args', 'kwargs'))})"
 
 
-def _written(public: Public) -> list[str]:
-    """Return each parameter of a function with its default, and the bare * and / between them."""
-    parameters = inspect.signature(public.function).parameters.values()
-    annotations = dict(parameters_of(public))
-    written, keyword_only = [], False
-    for p in parameters:
-        if p.name in ("self", "cls"):
-            continue
-        if p.kind is p.KEYWORD_ONLY and not keyword_only:
-            keyword_only = True
-            written.append("*")
-        star = {p.VAR_POSITIONAL: "*", p.VAR_KEYWORD: "**"}.get(p.kind, "")
-        keyword_only = keyword_only or star == "*"
-        note = f": {annotations[p.name]}" if annotations.get(p.name) else ""
-        default = "" if p.default is p.empty else f" = {_default(public, p)}"
-        written.append(f"{star}{p.name}{note}{default}")
-    return written
+def _arguments(function: Any) -> str:
+    """Return the parameters of a function, but for self and cls, as they are written; of a default that is a constant
+    its value.
+    """
+    arguments = deepcopy(definition_of(function).args)
+    arguments.args = [a for a in arguments.args if a.arg not in ("self", "cls")]
+    values = {p.name: p.default for p in inspect.signature(function).parameters.values()}
+    named = arguments.args[len(arguments.args) - len(arguments.defaults) :]
+    arguments.defaults = [_by_value(d, values[a.arg]) for a, d in zip(named, arguments.defaults, strict=True)]
+    arguments.kw_defaults = [
+        None if d is None else _by_value(d, values[a.arg])
+        for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+    ]
+    return ast.unparse(arguments)
 
 
-def _default(public: Public, parameter: inspect.Parameter) -> str:
-    """Return a default as it is written; of a constant its value, if that is a number."""
-    if isinstance(parameter.default, int | float):
-        return repr(parameter.default)
-    arguments = definition_of(public.function).args
-    plain = [*arguments.posonlyargs, *arguments.args]
-    defaults = dict(
-        zip([a.arg for a in plain[len(plain) - len(arguments.defaults) :]], arguments.defaults, strict=True)
-    )
-    defaults |= {a.arg: d for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True) if d is not None}
-    return ast.unparse(defaults[parameter.name])
+def _by_value(written: ast.expr, value: Any) -> ast.expr:
+    return ast.Constant(value) if isinstance(written, ast.Name) and isinstance(value, int | float) else written
 
 
 def _described(public: Public) -> str:

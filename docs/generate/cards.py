@@ -110,7 +110,9 @@ def _keywords(env: Any) -> str:
     vector = bounce_env.envs.vector_env_of(type(env)).defaults()
     lines = ["| keyword | default | what it takes |", "| --- | --- | --- |"]
     for name, default in env.defaults().items():
-        words = "; ".join(filter(None, (allowed.get(name), _beside(told.get(name, ""), default))))
+        checked, said = allowed.get(name, ""), _without_default(told.get(name, ""), default)
+        are_listed = checked and re.fullmatch(r'(?:"\w+"(?:, )?)+', said)
+        words = "; ".join(filter(None, (checked, "" if are_listed else said)))
         lines.append(f"| `{name}` | `{default!r}` | {words} |")
     for name, words in _OF_VECTORS.items():
         shown = getattr(vector[name], "name", vector[name])
@@ -118,13 +120,9 @@ def _keywords(env: Any) -> str:
     return "\n".join(lines)
 
 
-def _beside(words: str, default: Any) -> str:
-    """Return what a card says of a keyword beside its default, which stands first: "120.0 s, None for none"."""
-    for shown in (f'"{default}"', str(default)):
-        if words == shown:
-            return ""
-        words = words.removeprefix(f"{shown}, ").removeprefix(f"{shown}; ")
-    return "" if words[:1].isdigit() or words == '"pixels"' else words  # what the checks say in other words
+def _without_default(words: str, default: Any) -> str:
+    """Return what a card says of a keyword after its default, which stands first: "120.0 s, None for none"."""
+    return re.sub(rf'^"?{re.escape(str(default))}"?(?: s)?(?:[,;] |$)', "", words)
 
 
 def allowed_words(options: Any) -> dict[str, str]:

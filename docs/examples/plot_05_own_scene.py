@@ -113,7 +113,7 @@ for index, number in enumerate(env.unwrapped.observed):
 
 world = World(load_scene(path), features=bounce_env.ALL_FEATURES)
 world.record()
-world.reset(position=(0.5, 0.4), velocity=(0.4, 1.6))
+world.reset(position=(0.5, 0.4), velocity=(-0.95, 1.8))
 world.advance(3.0)
 figure, axes = plt.subplots(figsize=(5, 5.5), layout="constrained")
 plot_trajectory(world.recorded(), axes)

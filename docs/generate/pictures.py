@@ -88,8 +88,10 @@ def scene_picture(name: str) -> str:
     scene = bounce_env.load_scene(name)
     left, bottom, right, top = scene.bounds
     share = 4.2 / max(right - left, top - bottom)
-    figure = Figure(figsize=(0.9 + share * (right - left), 0.9 + share * (top - bottom)), layout="constrained")
+    sides = (0.9 + max(share * side, 0.6) for side in (right - left, top - bottom))  # a floor alone has no height
+    figure = Figure(figsize=tuple(sides), layout="constrained")
     axes = plot_scene(scene, figure.add_subplot())
+    axes.set_aspect("equal", adjustable="datalim")  # what has no height leaves the picture its own
     axes.grid(linewidth=0.3)
     axes.tick_params(labelsize=7)
     MADE.mkdir(exist_ok=True)

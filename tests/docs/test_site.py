@@ -1,12 +1,10 @@
 """The site: it builds without a warning, its examples run, it loads nothing from elsewhere, and all is in it."""
 
-import hashlib
 import os
 import re
 import shutil
 import subprocess
 import sys
-import tomllib
 import zlib
 from html.parser import HTMLParser
 from typing import get_args
@@ -23,6 +21,7 @@ from bounce_env.report.stability.mechanisms import MECHANISMS, tried_cases
 from bounce_env.scene import Element, load_scene
 from tests.conftest import require
 from tests.docs.pages import DOCS
+from tests.vendored import check_vendored
 
 sys.path.insert(0, str(DOCS))
 from generate import docstrings, public, scene_reference
@@ -237,7 +236,4 @@ def test_the_page_of_stability_counts_all_cases(site):
 
 
 def test_what_is_shipped_of_others_is_as_it_was():
-    vendor = DOCS / "vendor"
-    for row in tomllib.loads((vendor / "vendored.toml").read_text())["file"]:
-        assert hashlib.sha256((vendor / row["path"]).read_bytes()).hexdigest() == row["sha256"]
-        assert (vendor / row["licence_file"]).is_file()
+    check_vendored(DOCS / "vendor")

@@ -9,10 +9,9 @@ import subprocess
 import sys
 import threading
 import time
-import tomllib
 from contextlib import ExitStack, closing
-from hashlib import sha256
 from importlib import resources
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
@@ -23,6 +22,7 @@ from bounce_env.commands import BAD_USAGE, main
 from bounce_env.lab.guard import POLICY
 from bounce_env.lab.server import FILES, LARGEST_MESSAGE, MOST_SESSIONS, PAGES
 from tests.lab.serving import serving
+from tests.vendored import check_vendored
 
 pytestmark = pytest.mark.fast
 
@@ -242,16 +242,7 @@ def test_a_malformed_scene_is_told_its_line(tmp_path):
 
 
 def test_what_others_have_made_is_there_unchanged_with_its_licence():
-    vendor = resources.files("bounce_env.lab") / "vendor"
-    rows = tomllib.loads((vendor / "vendored.toml").read_text())["file"]
-    for row in rows:
-        text = (vendor / row["path"]).read_bytes()
-        assert sha256(text).hexdigest() == row["sha256"]
-        assert row["licence"] == "MIT"
-        assert "Permission is hereby granted" in (vendor / row["licence_file"]).read_text()
-        assert row["path"].endswith("uPlot.min.css") or row["version"].encode() in text[:400]
-    known = {name for row in rows for name in (row["path"], row["licence_file"])}
-    assert {file.name for file in vendor.iterdir()} == {*known, "vendored.toml"}
+    check_vendored(Path(str(resources.files("bounce_env.lab") / "vendor")))
 
 
 def test_the_command_refuses_what_it_cannot_do(tmp_path, capsys, server):
